@@ -1,1 +1,3 @@
+//! Tests of the whole: layering, scenarios, the commands together.
+
 fn main() {}

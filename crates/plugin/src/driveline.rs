@@ -1,0 +1,111 @@
+//! From the store of energy to the wheels.
+
+use crate::State;
+use std::fmt::Debug;
+
+/// The most named losses that one driveline may have.
+pub const MAX_LOSSES: usize = 8;
+
+/// What is asked of a driveline.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Demand {
+    /// Speed over ground [m/s].
+    pub speed_m_s: f64,
+    /// Force wanted at the wheels, forward [N]; negative to slow down.
+    pub force_n: f64,
+    /// Whether it is in neutral.
+    pub coasting: bool,
+    /// Electric power that other consumers take [W].
+    pub auxiliary_power_w: f64,
+    /// Mechanical power that is taken from the engine or motor: power take-off and hydraulics [W].
+    pub shaft_power_w: f64,
+}
+
+/// What a driveline shows on its instruments; NaN for those that it does not have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the names are those of the channels")]
+pub struct Readings {
+    pub engine_speed_rad_s: f64,
+    pub engine_torque_n_m: f64,
+    pub fuel_rate_kg_s: f64,
+    pub cvt_ratio: f64,
+    pub motor_speed_rad_s: f64,
+    pub motor_torque_n_m: f64,
+    pub battery_voltage_v: f64,
+    pub battery_current_a: f64,
+}
+
+impl Readings {
+    /// No instrument at all.
+    pub const NONE: Self = Self {
+        engine_speed_rad_s: f64::NAN,
+        engine_torque_n_m: f64::NAN,
+        fuel_rate_kg_s: f64::NAN,
+        cvt_ratio: f64::NAN,
+        motor_speed_rad_s: f64::NAN,
+        motor_torque_n_m: f64::NAN,
+        battery_voltage_v: f64::NAN,
+        battery_current_a: f64::NAN,
+    };
+
+    /// Channel name and value of each instrument.
+    pub fn channels(&self) -> [(&'static str, f64); 8] {
+        [
+            ("engine_speed_rad_s", self.engine_speed_rad_s),
+            ("engine_torque_n_m", self.engine_torque_n_m),
+            ("fuel_rate_kg_s", self.fuel_rate_kg_s),
+            ("cvt_ratio", self.cvt_ratio),
+            ("motor_speed_rad_s", self.motor_speed_rad_s),
+            ("motor_torque_n_m", self.motor_torque_n_m),
+            ("battery_voltage_v", self.battery_voltage_v),
+            ("battery_current_a", self.battery_current_a),
+        ]
+    }
+}
+
+/// What a driveline gives.
+///
+/// Its powers balance: `source_power_w = force_n · speed + Σ losses_w + auxiliary + shaft power`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Delivery {
+    /// Force at the wheels, forward [N]; it may fall short of what was asked.
+    pub force_n: f64,
+    /// Power drawn from the store: lower heating value of the fuel, or open-circuit power of the battery [W].
+    pub source_power_w: f64,
+    /// Power of each loss that [`Driveline::losses`] names [W].
+    pub losses_w: [f64; MAX_LOSSES],
+    /// What its instruments show.
+    pub readings: Readings,
+}
+
+impl Delivery {
+    /// Nothing is given and nothing is drawn.
+    pub const NOTHING: Self =
+        Self { force_n: 0.0, source_power_w: 0.0, losses_w: [0.0; MAX_LOSSES], readings: Readings::NONE };
+}
+
+/// Engine, motors, gears and stores.
+pub trait Driveline: Debug + Send + Sync {
+    /// What it remembers.
+    fn states(&self) -> Vec<State> {
+        Vec::new()
+    }
+
+    /// Names of its losses, at most [`MAX_LOSSES`].
+    fn losses(&self) -> &'static [&'static str];
+
+    /// Name of its store of energy, for the ledger.
+    fn source(&self) -> &'static str;
+
+    /// Mass that its rotating parts add to the vehicle's inertia [kg].
+    fn rotating_mass_kg(&self, coasting: bool) -> f64;
+
+    /// Answers a demand, and says how its states change (`rates`, one for each state, per second).
+    fn deliver(&self, demand: &Demand, states: &[f64], rates: &mut [f64]) -> Delivery;
+
+    /// Force at the wheels [N] that a recorded torque of its engine or motor [N m] makes; `None` where it cannot tell.
+    fn force_of_torque_n(&self, torque_n_m: f64, speed_m_s: f64) -> Option<f64> {
+        let _ = (torque_n_m, speed_m_s);
+        None
+    }
+}

@@ -1,0 +1,276 @@
+//! The balance of forces and of powers at one instant.
+//!
+//! (m + m_rot) dv/dt = F_drive − F_brake − F_soil + F_air − m g sin θ − F_drawbar + Σ F_effect
+//!
+//! Source: Newton's second law along the path, with rotating parts reduced to the wheel
+//! (Mitschke and Wallentowitz, *Dynamik der Kraftfahrzeuge* (2014), chapter A).
+
+use crate::ledger::{
+    AIR, AUXILIARY, BRAKES, DRAWBAR, FIRST_LOSS, HYDRAULICS, PTO, SLOPE, SOIL, SOURCE, Slots,
+};
+use crate::model::Layout;
+use crate::{Model, Resistance};
+use headland_plugin::{Action, Air, Contact, Delivery, Demand, Situation};
+
+/// What the driver, or the recording, wants at this instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Command {
+    /// Neutral.
+    Coast,
+    /// This force at the wheels [N], from a recorded driveline that the model's own limits do not touch.
+    Recorded(f64),
+    /// This acceleration [m/s²], as far as the driveline can; brakes help.
+    Accelerate(f64),
+}
+
+/// What a recording knows better than the model.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Given {
+    pub sin_slope: Option<f64>,
+    pub heading_rad: Option<f64>,
+    pub curvature_per_m: Option<f64>,
+    pub air: Option<Air>,
+    pub auxiliary_power_w: Option<f64>,
+    pub drawbar_force_n: Option<f64>,
+}
+
+/// Everything that is known at one instant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Instant {
+    pub acceleration_m_s2: f64,
+    pub situation: Situation,
+    pub effective_mass_kg: f64,
+    pub delivery: Delivery,
+    pub soil_n: f64,
+    pub air_n: f64,
+    pub slope_n: f64,
+    pub brake_n: f64,
+    pub drawbar_n: f64,
+    pub auxiliary_power_w: f64,
+    pub pto_power_w: f64,
+    pub hydraulic_power_w: f64,
+}
+
+/// Time, place and motion at which the balance is asked for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Point {
+    pub time_s: f64,
+    pub position_m: f64,
+    pub speed_m_s: f64,
+    /// 1 forward, −1 backward, 0 where the vehicle rests and the forces have to decide.
+    pub direction: f64,
+}
+
+/// Scratch memory of the balance, so that no step allocates.
+#[derive(Debug)]
+pub(crate) struct Scratch {
+    pub actions: Vec<Action>,
+}
+
+impl Model {
+    /// Evaluates the balance; writes the rates of all states and the power of every account [W].
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "the inner loop: everything is passed, nothing is allocated"
+    )]
+    pub(crate) fn balance(
+        &self,
+        point: Point,
+        command: Command,
+        given: &Given,
+        layout: &Layout,
+        slots: &Slots,
+        states: &[f64],
+        rates: &mut [f64],
+        powers: &mut [f64],
+        scratch: &mut Scratch,
+    ) -> Instant {
+        let Point { position_m, speed_m_s, direction, .. } = point;
+        let mut situation = self.situation(point, command, given);
+        let sums = self.sums(&mut situation, given, layout, states, rates, scratch);
+        let place = situation.place;
+        let air = situation.air;
+
+        let rolling_speed = (speed_m_s * direction).max(0.0);
+        let weight_n = situation.mass_kg * self.gravity_m_s2;
+        let (ground_n, air_n) = match self.vehicle.resistance {
+            Resistance::Drag { area_m2 } => {
+                let contact =
+                    Contact { load_n: weight_n * place.cos_slope(), speed_m_s: rolling_speed, position_m };
+                let soil = self.soil.as_ref().map_or(0.0, |soil| soil.resistance_n(&contact));
+                (soil, air.drag_n(area_m2, speed_m_s, place.heading_rad))
+            }
+            Resistance::RoadLoad { f0_n, f1_n_s_m, f2_n_s2_m2, air_density_kg_m3 } => {
+                let area_m2 = 2.0 * f2_n_s2_m2 / air_density_kg_m3;
+                (f0_n + f1_n_s_m * rolling_speed, air.drag_n(area_m2, speed_m_s, place.heading_rad))
+            }
+        };
+        let slope_n = weight_n * place.sin_slope;
+        let effective_mass_kg = situation.mass_kg + sums.rotating_kg;
+        let free_n = air_n - slope_n + sums.pushed_n;
+        let held_n = ground_n + sums.resistance_n + sums.drawbar_n;
+
+        let range = layout.driveline.clone();
+        let shaft_power_w = sums.pto_power_w + sums.hydraulic_power_w + sums.effect_shaft_w;
+        let mut demand = Demand {
+            speed_m_s,
+            force_n: 0.0,
+            coasting: situation.coasting,
+            auxiliary_power_w: sums.auxiliary_power_w,
+            shaft_power_w,
+        };
+        demand.force_n = match command {
+            Command::Coast => 0.0,
+            Command::Recorded(force_n) => force_n,
+            Command::Accelerate(wanted) => {
+                let way = if direction == 0.0 { 1.0 } else { direction };
+                let resting = speed_m_s == 0.0 && wanted == 0.0;
+                if resting { 0.0 } else { effective_mass_kg * wanted - free_n + way * held_n }
+            }
+        };
+        let mut delivery = self.driveline.deliver(&demand, &states[range.clone()], &mut rates[range]);
+        if let Command::Recorded(force_n) = command {
+            // The recording has the last word on the force; what the model would not have given is made up by no one.
+            delivery.source_power_w += (force_n - delivery.force_n) * speed_m_s;
+            delivery.force_n = force_n;
+        }
+        situation.tractive_force_n = delivery.force_n;
+        let brake_n = match command {
+            Command::Accelerate(_) if direction != 0.0 => {
+                ((delivery.force_n - demand.force_n) * direction).max(0.0)
+            }
+            // A driver who wants to stand still keeps a foot on the brake.
+            Command::Accelerate(wanted) if wanted <= 0.0 => f64::INFINITY,
+            _ => 0.0,
+        };
+
+        // Motion takes every resistance with it; at rest they only hold against what pushes.
+        let driving_n = delivery.force_n + free_n;
+        let resisting_n = held_n + brake_n;
+        let way = if direction != 0.0 {
+            direction
+        } else if driving_n.abs() <= resisting_n {
+            0.0
+        } else {
+            driving_n.signum()
+        };
+        let acceleration_m_s2 =
+            if way == 0.0 { 0.0 } else { (driving_n - way * resisting_n) / effective_mass_kg };
+
+        let brake_n = if brake_n.is_finite() { brake_n } else { 0.0 };
+        let instant = Instant {
+            acceleration_m_s2,
+            situation,
+            effective_mass_kg,
+            delivery,
+            soil_n: ground_n,
+            air_n,
+            slope_n,
+            brake_n,
+            drawbar_n: sums.drawbar_n,
+            auxiliary_power_w: sums.auxiliary_power_w,
+            pto_power_w: sums.pto_power_w,
+            hydraulic_power_w: sums.hydraulic_power_w,
+        };
+        book(&instant, way, given, slots, &scratch.actions, powers);
+        instant
+    }
+
+    /// Where the vehicle is, and in what air.
+    fn situation(&self, point: Point, command: Command, given: &Given) -> Situation {
+        let mut place = self.terrain.at(point.position_m);
+        if let Some(sin_slope) = given.sin_slope {
+            place.sin_slope = sin_slope;
+        }
+        if let Some(heading) = given.heading_rad {
+            place.heading_rad = heading;
+        }
+        if let Some(curvature) = given.curvature_per_m {
+            place.curvature_per_m = curvature;
+        }
+        Situation {
+            time_s: point.time_s,
+            position_m: point.position_m,
+            speed_m_s: point.speed_m_s,
+            mass_kg: self.vehicle.mass_kg,
+            gravity_m_s2: self.gravity_m_s2,
+            place,
+            air: given.air.unwrap_or(self.air),
+            coasting: command == Command::Coast,
+            tractive_force_n: 0.0,
+        }
+    }
+
+    /// What effects and tasks add up to; the mass of the situation grows by what they carry.
+    fn sums(
+        &self,
+        situation: &mut Situation,
+        given: &Given,
+        layout: &Layout,
+        states: &[f64],
+        rates: &mut [f64],
+        scratch: &mut Scratch,
+    ) -> Sums {
+        let mut sums = Sums {
+            rotating_kg: self.vehicle.rotating_mass_kg + self.driveline.rotating_mass_kg(situation.coasting),
+            auxiliary_power_w: given.auxiliary_power_w.unwrap_or(0.0),
+            drawbar_n: given.drawbar_force_n.unwrap_or(0.0),
+            ..Sums::default()
+        };
+        let mut mass_kg = situation.mass_kg;
+        for (index, effect) in self.effects.iter().enumerate() {
+            let range = layout.effects[index].clone();
+            let action = effect.plugin.act(situation, &states[range.clone()], &mut rates[range]);
+            mass_kg += action.mass_kg;
+            sums.rotating_kg += action.rotating_mass_kg;
+            sums.pushed_n += action.force_n;
+            sums.resistance_n += action.resistance_n;
+            sums.auxiliary_power_w += action.auxiliary_power_w;
+            sums.effect_shaft_w += action.shaft_power_w;
+            scratch.actions[index] = action;
+        }
+        situation.mass_kg = mass_kg;
+        for (index, task) in self.tasks.iter().enumerate() {
+            let range = layout.tasks[index].clone();
+            let load = task.plugin.load(situation, &states[range.clone()], &mut rates[range]);
+            sums.drawbar_n += load.drawbar_force_n;
+            sums.pto_power_w += load.pto_power_w;
+            sums.hydraulic_power_w += load.hydraulic_power_w;
+        }
+        sums
+    }
+}
+
+/// What effects and tasks add up to.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    rotating_kg: f64,
+    pushed_n: f64,
+    resistance_n: f64,
+    auxiliary_power_w: f64,
+    effect_shaft_w: f64,
+    drawbar_n: f64,
+    pto_power_w: f64,
+    hydraulic_power_w: f64,
+}
+
+/// Writes the power of every account [W]; `way` is the direction in which resistances act.
+fn book(instant: &Instant, way: f64, given: &Given, slots: &Slots, actions: &[Action], powers: &mut [f64]) {
+    let speed_m_s = instant.situation.speed_m_s;
+    powers[SOURCE] = instant.delivery.source_power_w;
+    powers[SOIL] = way * instant.soil_n * speed_m_s;
+    powers[AIR] = -instant.air_n * speed_m_s;
+    powers[SLOPE] = instant.slope_n * speed_m_s;
+    powers[BRAKES] = way * instant.brake_n * speed_m_s;
+    powers[DRAWBAR] = way * instant.drawbar_n * speed_m_s;
+    powers[PTO] = instant.pto_power_w;
+    powers[HYDRAULICS] = instant.hydraulic_power_w;
+    powers[AUXILIARY] = given.auxiliary_power_w.unwrap_or(0.0);
+    let losses = slots.first_effect - FIRST_LOSS;
+    powers[FIRST_LOSS..slots.first_effect].copy_from_slice(&instant.delivery.losses_w[..losses]);
+    for (power, action) in powers[slots.first_effect..].iter_mut().zip(actions) {
+        *power = (way * action.resistance_n - action.force_n) * speed_m_s
+            + action.auxiliary_power_w
+            + action.shaft_power_w;
+    }
+}

@@ -1,0 +1,54 @@
+//! The longitudinal simulation: one degree of freedom along a path, the forces and powers that act on it, and a ledger
+//! that accounts for every joule.
+//!
+//! Three ways to drive it: a [`cycle`](simulate) of phases with a driver, coasting, and a [`replay`] of recorded inputs.
+//! It knows no plugin by name and reads no file.
+
+mod balance;
+mod cycle;
+mod ledger;
+mod model;
+#[cfg(test)]
+mod physics_tests;
+mod recorder;
+mod replay;
+mod slope;
+mod step;
+
+pub use cycle::{Cycle, Phase, Start, Until, simulate};
+pub use ledger::{Entry, Ledger};
+pub use model::{Model, Named, Resistance, Vehicle};
+pub use replay::{Drive, Inputs, Replay, ReplayError, replay};
+pub use slope::{LocalFit, local_fit};
+
+use headland_trace::Trace;
+use serde::Serialize;
+
+/// What a simulation leaves behind.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Every step.
+    pub trace: Trace,
+    /// Where the energy came from and went.
+    pub ledger: Ledger,
+    /// How it ended.
+    pub end: End,
+    /// Steps that were integrated.
+    pub steps: usize,
+}
+
+/// How a simulation ended.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub enum End {
+    /// Every phase was driven to its end.
+    Finished,
+    /// It could not go on; what was simulated up to there is kept.
+    Stopped {
+        /// When [s].
+        time_s: f64,
+        /// Where along the path [m].
+        position_m: f64,
+        /// Why, in a sentence.
+        reason: String,
+    },
+}

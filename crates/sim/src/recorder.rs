@@ -1,0 +1,119 @@
+//! Writes down every step.
+
+use crate::balance::Instant;
+use crate::step::Machine;
+use headland_plugin::Action;
+use headland_trace::{Origin, Trace, TraceError};
+
+/// Columns that grow row by row.
+#[derive(Debug)]
+pub(crate) struct Recorder {
+    time_s: Vec<f64>,
+    names: Vec<String>,
+    columns: Vec<Vec<f64>>,
+}
+
+const MOTION: [&str; 17] = [
+    "position_m",
+    "speed_m_s",
+    "acceleration_m_s2",
+    "elevation_m",
+    "grade",
+    "heading_rad",
+    "east_m",
+    "north_m",
+    "tractive_force_n",
+    "brake_force_n",
+    "soil_resistance_n",
+    "air_resistance_n",
+    "slope_resistance_n",
+    "drawbar_force_n",
+    "pto_power_w",
+    "hydraulic_power_w",
+    "auxiliary_power_w",
+];
+
+/// Channels that are left out of a trace in which they are zero throughout.
+const ONLY_IF_USED: [&str; 5] =
+    ["brake_force_n", "drawbar_force_n", "pto_power_w", "hydraulic_power_w", "auxiliary_power_w"];
+
+impl Recorder {
+    pub fn new(machine: &Machine) -> Self {
+        let mut names: Vec<String> = MOTION.map(str::to_owned).into();
+        names.push("coasting".to_owned());
+        names.extend(headland_plugin::Readings::NONE.channels().map(|(name, _)| name.to_owned()));
+        names.extend(machine.layout.states.iter().map(|(name, _)| name.clone()));
+        for effect in &machine.model.effects {
+            for unit in ["n", "w", "kg"] {
+                names.push(format!("{}_{unit}", effect.name));
+            }
+        }
+        let columns = vec![Vec::new(); names.len()];
+        Self { time_s: Vec::new(), names, columns }
+    }
+
+    pub fn last_time_s(&self) -> Option<f64> {
+        self.time_s.last().copied()
+    }
+
+    pub fn push(&mut self, machine: &Machine, instant: &Instant) {
+        let place = instant.situation.place;
+        let motion = [
+            machine.position_m(),
+            machine.speed_m_s(),
+            instant.acceleration_m_s2,
+            place.elevation_m,
+            place.grade(),
+            place.heading_rad,
+            place.east_m,
+            place.north_m,
+            instant.delivery.force_n,
+            instant.brake_n,
+            instant.soil_n,
+            -instant.air_n,
+            instant.slope_n,
+            instant.drawbar_n,
+            instant.pto_power_w,
+            instant.hydraulic_power_w,
+            instant.auxiliary_power_w,
+        ];
+        self.time_s.push(machine.time_s);
+        let readings = instant.delivery.readings.channels();
+        let values = motion
+            .into_iter()
+            .chain([f64::from(u8::from(instant.situation.coasting))])
+            .chain(readings.into_iter().map(|(_, value)| value))
+            .chain(machine.states().iter().copied())
+            .chain(
+                machine.effect_actions().iter().flat_map(|action| effect_row(action, machine.speed_m_s())),
+            );
+        for (column, value) in self.columns.iter_mut().zip(values) {
+            column.push(value);
+        }
+    }
+
+    pub fn finish(self) -> Result<Trace, TraceError> {
+        let mut trace = Trace::new(self.time_s)?;
+        let fixed = MOTION.len() + 1;
+        for (index, (name, values)) in self.names.into_iter().zip(self.columns).enumerate() {
+            let absent = values.iter().all(|value| value.is_nan());
+            let optional = ONLY_IF_USED.contains(&name.as_str())
+                || (index >= fixed && ["_n", "_w", "_kg"].iter().any(|unit| name.ends_with(unit)));
+            let unused = optional && values.iter().all(|value| *value == 0.0);
+            if !absent && !unused {
+                trace.push(name, values, Origin::Predicted)?;
+            }
+        }
+        Ok(trace)
+    }
+}
+
+/// Net forward force, power and mass of an effect.
+fn effect_row(action: &Action, speed_m_s: f64) -> [f64; 3] {
+    let way = if speed_m_s < 0.0 { -1.0 } else { 1.0 };
+    [
+        action.force_n - way * action.resistance_n,
+        action.auxiliary_power_w + action.shaft_power_w,
+        action.mass_kg,
+    ]
+}

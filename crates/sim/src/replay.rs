@@ -1,0 +1,335 @@
+//! Driving the model with what was recorded.
+//!
+//! Either the speed is given, and the model says what force, torque, fuel and electricity it took; or the force (a
+//! recorded torque, a recorded tractive force, or neutral) is given, and the model says how the vehicle moved. Long
+//! recordings are driven in windows that start from the recorded speed, so that errors do not pile up without bound.
+
+use crate::balance::{Command, Given};
+use crate::ledger::Ledger;
+use crate::recorder::Recorder;
+use crate::slope::{LocalFit, local_fit};
+use crate::step::Machine;
+use crate::{End, Model, Outcome};
+use headland_trace::{Origin, Trace, TraceError};
+
+/// Which recorded channel moves the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drive {
+    /// `speed_m_s`: what did the motion cost?
+    Speed,
+    /// `motor_torque_n_m` or `engine_torque_n_m`, through the driveline's gears.
+    Torque,
+    /// `tractive_force_n`.
+    Force,
+    /// None: it coasts.
+    Coast,
+}
+
+/// How a recording drives the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Replay {
+    /// What moves the model.
+    pub drive: Drive,
+    /// Recorded circumstances that the model is told as well.
+    pub also: Vec<Inputs>,
+    /// Length of the windows [s]; `None` for one window.
+    pub window_s: Option<f64>,
+    /// Half width of the local fit that gives speed and acceleration of the recording [s].
+    pub smoothing_s: f64,
+    /// Longest step of the integration [s].
+    pub step_s: f64,
+}
+
+/// A recorded circumstance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "each is named after its channel")]
+pub enum Inputs {
+    Grade,
+    Heading,
+    Curvature,
+    Wind,
+    AirTemperature,
+    AuxiliaryPower,
+    DrawbarForce,
+    Coasting,
+}
+
+impl Inputs {
+    /// Every circumstance.
+    pub const ALL: [Self; 8] = [
+        Self::Grade,
+        Self::Heading,
+        Self::Curvature,
+        Self::Wind,
+        Self::AirTemperature,
+        Self::AuxiliaryPower,
+        Self::DrawbarForce,
+        Self::Coasting,
+    ];
+
+    /// The channels that it is made of.
+    pub fn channels(self) -> &'static [&'static str] {
+        match self {
+            Self::Grade => &["grade"],
+            Self::Heading => &["heading_rad"],
+            Self::Curvature => &["curvature_per_m"],
+            Self::Wind => &["wind_speed_m_s", "wind_direction_rad"],
+            Self::AirTemperature => &["air_temperature_c"],
+            Self::AuxiliaryPower => &["auxiliary_power_w"],
+            Self::DrawbarForce => &["drawbar_force_n"],
+            Self::Coasting => &["coasting"],
+        }
+    }
+}
+
+/// A recording that cannot drive the model.
+#[derive(Debug, thiserror::Error)]
+pub enum ReplayError {
+    /// A channel that drives the model is not in the recording.
+    #[error("the recording cannot drive the model: {0}")]
+    Missing(TraceError),
+    /// The recording is too short.
+    #[error("the recording has {samples} samples, expected at least 2")]
+    Short {
+        /// Samples found.
+        samples: usize,
+    },
+    /// The driveline cannot make a force of the recorded torque.
+    #[error("the driveline of the scenario cannot turn a recorded torque into a force at the wheels")]
+    NoTorque,
+    /// The steps do not make a trace: a bug.
+    #[error(transparent)]
+    Trace(#[from] TraceError),
+}
+
+/// Drives the model with a recording. The trace has the recording's time base; samples that could not be simulated
+/// for want of input are NaN.
+///
+/// # Errors
+/// [`ReplayError`].
+pub fn replay(model: &Model, recorded: &Trace, how: &Replay) -> Result<Outcome, ReplayError> {
+    if recorded.len() < 2 {
+        return Err(ReplayError::Short { samples: recorded.len() });
+    }
+    let tape = Tape::load(model, recorded, how)?;
+    let outcome = match how.drive {
+        Drive::Speed => tape.backward(model)?,
+        Drive::Torque | Drive::Force | Drive::Coast => tape.forward(model, how)?,
+    };
+    Ok(Outcome { trace: mark_driven(&outcome.trace, how)?, ..outcome })
+}
+
+/// The recorded inputs.
+struct Tape<'a> {
+    time_s: &'a [f64],
+    motion: LocalFit,
+    position_m: Vec<f64>,
+    /// Force at the wheels [N], or torque [N m], by what drives.
+    push: Option<&'a [f64]>,
+    also: Vec<(Inputs, Vec<&'a [f64]>)>,
+    state_of_charge: Option<&'a [f64]>,
+}
+
+/// Below this recorded speed [m/s] the vehicle stands, held by whatever held it.
+const STANDSTILL_M_S: f64 = 0.02;
+
+impl<'a> Tape<'a> {
+    fn load(model: &Model, recorded: &'a Trace, how: &Replay) -> Result<Self, ReplayError> {
+        let time_s = recorded.time_s();
+        let speed = recorded.require("speed_m_s").map_err(ReplayError::Missing)?;
+        let motion = local_fit(time_s, speed, how.smoothing_s);
+        let position_m = match recorded.get("position_m") {
+            Some(position) => position.to_vec(),
+            None => travelled(time_s, &motion.value),
+        };
+        let push = match how.drive {
+            Drive::Speed | Drive::Coast => None,
+            Drive::Force => Some(recorded.require("tractive_force_n").map_err(ReplayError::Missing)?),
+            Drive::Torque => {
+                if model.driveline.force_of_torque_n(1.0, 1.0).is_none() {
+                    return Err(ReplayError::NoTorque);
+                }
+                let torque = recorded
+                    .get("motor_torque_n_m")
+                    .map_or_else(|| recorded.require("engine_torque_n_m"), Ok)
+                    .map_err(ReplayError::Missing)?;
+                Some(torque)
+            }
+        };
+        let mut also = Vec::new();
+        for input in &how.also {
+            let mut columns = Vec::new();
+            for name in input.channels() {
+                columns.push(recorded.require(name).map_err(ReplayError::Missing)?);
+            }
+            also.push((*input, columns));
+        }
+        let state_of_charge = recorded.get("state_of_charge");
+        Ok(Self { time_s, motion, position_m, push, also, state_of_charge })
+    }
+
+    /// The circumstances at a share of the way from sample `index` to the next, and whether the vehicle coasts.
+    fn given(&self, model: &Model, index: usize, share: f64) -> (Given, bool) {
+        let mut given = Given::default();
+        let mut coasting = false;
+        for (input, columns) in &self.also {
+            let value = |column: usize| {
+                let series = columns[column];
+                let next = series[(index + 1).min(series.len() - 1)];
+                series[index] + share * (next - series[index])
+            };
+            match input {
+                Inputs::Grade => given.sin_slope = Some(value(0).atan().sin()),
+                Inputs::Heading => given.heading_rad = Some(columns[0][index]),
+                Inputs::Curvature => given.curvature_per_m = Some(value(0)),
+                Inputs::Wind => {
+                    let air = given.air.get_or_insert(model.air);
+                    (air.wind_speed_m_s, air.wind_from_rad) = (value(0), columns[1][index]);
+                }
+                Inputs::AirTemperature => {
+                    given.air.get_or_insert(model.air).temperature_c = value(0);
+                }
+                Inputs::AuxiliaryPower => given.auxiliary_power_w = Some(value(0)),
+                Inputs::DrawbarForce => given.drawbar_force_n = Some(value(0)),
+                Inputs::Coasting => coasting = columns[0][index] >= 0.5,
+            }
+        }
+        (given, coasting)
+    }
+
+    fn adopt_charge(&self, machine: &mut Machine, index: usize) {
+        let Some(charge) = self.state_of_charge else { return };
+        let state = machine.layout.states.iter().position(|(name, _)| name == "state_of_charge");
+        if let Some(state) = state
+            && charge[index].is_finite()
+        {
+            machine.set_state(state, charge[index]);
+        }
+    }
+
+    fn backward(&self, model: &Model) -> Result<Outcome, ReplayError> {
+        let mut machine = Machine::new(model, self.time_s[0], self.position_m[0], self.motion.value[0]);
+        self.adopt_charge(&mut machine, 0);
+        let mut recorder = Recorder::new(&machine);
+        let mut before: Vec<f64> = Vec::new();
+        for (index, &time_s) in self.time_s.iter().enumerate() {
+            let (given, coasting) = self.given(model, index, 0.0);
+            let wanted = self.motion.slope[index];
+            let stands = self.motion.value[index].abs() < STANDSTILL_M_S;
+            let speed = if stands { 0.0 } else { self.motion.value[index] };
+            let command = match (coasting, stands) {
+                (true, _) => Command::Coast,
+                (false, true) => Command::Accelerate(0.0),
+                (false, false) => Command::Accelerate(wanted),
+            };
+            let control = move |_: f64, _: f64, _: f64| (command, given);
+            let instant = if index == 0 {
+                machine.set_motion(self.position_m[0], speed);
+                machine.instant(&control)
+            } else {
+                machine.follow(time_s, self.position_m[index], speed, &before, &control)
+            };
+            before.clear();
+            before.extend_from_slice(machine.rates());
+            recorder.push(&machine, &instant);
+        }
+        finish(&machine, recorder)
+    }
+
+    fn forward(&self, model: &Model, how: &Replay) -> Result<Outcome, ReplayError> {
+        let mut machine =
+            Machine::new(model, self.time_s[0], self.position_m[0], self.motion.value[0].max(0.0));
+        self.adopt_charge(&mut machine, 0);
+        let mut recorder = Recorder::new(&machine);
+        let mut window_start_s = self.time_s[0];
+        for index in 0..self.time_s.len() {
+            let (begin_s, next) = (self.time_s[index], (index + 1).min(self.time_s.len() - 1));
+            if how.window_s.is_some_and(|window_s| begin_s - window_start_s >= window_s) {
+                machine.set_motion(self.position_m[index], self.motion.value[index].max(0.0));
+                self.adopt_charge(&mut machine, index);
+                window_start_s = begin_s;
+            }
+            let span_s = self.time_s[next] - begin_s;
+            let stands = [index, next].iter().all(|at| self.motion.value[*at] < STANDSTILL_M_S);
+            if stands {
+                machine.set_motion(machine.position_m(), 0.0);
+            }
+            let control = |time_s: f64, _: f64, speed: f64| {
+                let share = if span_s > 0.0 { (time_s - begin_s) / span_s } else { 0.0 };
+                let (given, coasting) = self.given(model, index, share);
+                let command = match self.push {
+                    _ if stands => Command::Accelerate(0.0),
+                    _ if coasting => Command::Coast,
+                    None => Command::Coast,
+                    Some(push) => {
+                        let value = push[index] + share * (push[next] - push[index]);
+                        let force = if how.drive == Drive::Torque {
+                            model.driveline.force_of_torque_n(value, speed).unwrap_or(f64::NAN)
+                        } else {
+                            value
+                        };
+                        // Nobody reverses on a braking motor: at rest it only holds.
+                        Command::Recorded(if speed <= 0.0 { force.max(0.0) } else { force })
+                    }
+                };
+                (command, given)
+            };
+            let instant = machine.instant(&control);
+            recorder.push(&machine, &instant);
+            if next == index {
+                break;
+            }
+            let pieces = (span_s / how.step_s).ceil().max(1.0);
+            let mut first = instant;
+            while machine.time_s < self.time_s[next] {
+                let left_s = self.time_s[next] - machine.time_s;
+                let step_s = left_s.min(span_s / pieces);
+                if machine.step(&first, step_s, &control, |_, _, _| f64::INFINITY) >= left_s - 1e-12 {
+                    machine.time_s = self.time_s[next];
+                } else {
+                    first = machine.instant(&control);
+                }
+            }
+        }
+        finish(&machine, recorder)
+    }
+}
+
+fn finish(machine: &Machine, recorder: Recorder) -> Result<Outcome, ReplayError> {
+    let ledger = Ledger::close(
+        machine.model.driveline.source(),
+        machine.kinetic_gain_j(),
+        &machine.slots,
+        machine.energies_j(),
+    );
+    Ok(Outcome { trace: recorder.finish()?, ledger, end: End::Finished, steps: machine.steps })
+}
+
+/// Distance from speed, by the trapezoidal rule.
+fn travelled(time_s: &[f64], speed_m_s: &[f64]) -> Vec<f64> {
+    let mut position = 0.0;
+    let mut positions = vec![0.0];
+    for (times, speeds) in time_s.windows(2).zip(speed_m_s.windows(2)) {
+        let mean = 0.5 * (speeds[0] + speeds[1]);
+        position += if mean.is_finite() { mean * (times[1] - times[0]) } else { 0.0 };
+        positions.push(position);
+    }
+    positions
+}
+
+/// Marks the channels that agree with the recording because they were taken from it.
+fn mark_driven(trace: &Trace, how: &Replay) -> Result<Trace, TraceError> {
+    let mut driven: Vec<&str> = match how.drive {
+        Drive::Speed => vec!["speed_m_s", "position_m", "acceleration_m_s2"],
+        Drive::Torque => vec!["motor_torque_n_m", "engine_torque_n_m", "tractive_force_n"],
+        Drive::Force => vec!["tractive_force_n"],
+        Drive::Coast => vec!["coasting"],
+    };
+    driven.extend(how.also.iter().flat_map(|input| input.channels()));
+    let mut marked = Trace::new(trace.time_s().to_vec())?;
+    for channel in trace.channels() {
+        let origin = if driven.contains(&channel.name.as_str()) { Origin::Driven } else { channel.origin };
+        marked.push(channel.name.clone(), channel.values.clone(), origin)?;
+    }
+    Ok(marked)
+}

@@ -1,0 +1,91 @@
+//! Value and slope of a noisy series at each of its samples.
+
+/// A local fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LocalFit {
+    /// Smoothed value at each sample, in the unit of the series.
+    pub value: Vec<f64>,
+    /// Slope at each sample, in that unit per second.
+    pub slope: Vec<f64>,
+}
+
+/// Fits a parabola to the samples within `half_width_s` of each sample, by least squares.
+///
+/// The base may be uneven. With fewer than four samples in reach a straight line is fitted; a lone one has no slope.
+/// Source: Savitzky and Golay, *Analytical Chemistry* 36 (1964) 1627, here for an uneven base.
+pub fn local_fit(time_s: &[f64], values: &[f64], half_width_s: f64) -> LocalFit {
+    let mut fit =
+        LocalFit { value: Vec::with_capacity(values.len()), slope: Vec::with_capacity(values.len()) };
+    let (mut first, mut end) = (0, 0);
+    for (index, &at) in time_s.iter().enumerate() {
+        while time_s[first] < at - half_width_s && first < index {
+            first += 1;
+        }
+        while end < time_s.len() && time_s[end] <= at + half_width_s {
+            end += 1;
+        }
+        let low = first.min(index.saturating_sub(1));
+        let high = end.max((index + 2).min(time_s.len()));
+        let (value, slope) = parabola(&time_s[low..high], &values[low..high], at);
+        fit.value.push(value);
+        fit.slope.push(slope);
+    }
+    fit
+}
+
+/// Value and slope at `at` of the parabola (or line) of least squares.
+fn parabola(time_s: &[f64], values: &[f64], at: f64) -> (f64, f64) {
+    let mut moments = [0.0; 5];
+    let mut sums = [0.0; 3];
+    for (time, value) in time_s.iter().zip(values).filter(|(_, value)| value.is_finite()) {
+        let t = time - at;
+        let mut power = 1.0;
+        for (index, moment) in moments.iter_mut().enumerate() {
+            *moment += power;
+            if index < 3 {
+                sums[index] += power * value;
+            }
+            power *= t;
+        }
+    }
+    let [s0, s1, s2, s3, s4] = moments;
+    let [y0, y1, y2] = sums;
+    if s0 >= 4.0 {
+        let determinant = s0 * (s2 * s4 - s3 * s3) - s1 * (s1 * s4 - s2 * s3) + s2 * (s1 * s3 - s2 * s2);
+        if determinant.abs() > 1e-12 * s0 * s2 * s4 {
+            let value = (y0 * (s2 * s4 - s3 * s3) - s1 * (y1 * s4 - y2 * s3) + s2 * (y1 * s3 - y2 * s2))
+                / determinant;
+            let slope = (s0 * (y1 * s4 - y2 * s3) - y0 * (s1 * s4 - s2 * s3) + s2 * (s1 * y2 - s2 * y1))
+                / determinant;
+            return (value, slope);
+        }
+    }
+    let determinant = s0 * s2 - s1 * s1;
+    if determinant > 0.0 {
+        ((y0 * s2 - y1 * s1) / determinant, (s0 * y1 - s1 * y0) / determinant)
+    } else {
+        (y0 / s0, f64::NAN)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parabola_on_an_uneven_base_is_met_exactly() {
+        let time: Vec<f64> = (0..40).map(|i| f64::from(i) * 0.1 + 0.02 * f64::from(i % 3)).collect();
+        let values: Vec<f64> = time.iter().map(|t| 3.0 - 2.0 * t + 0.5 * t * t).collect();
+        let fit = local_fit(&time, &values, 0.45);
+        for (index, t) in time.iter().enumerate() {
+            assert!((fit.slope[index] - (t - 2.0)).abs() < 1e-8, "{t}");
+            assert!((fit.value[index] - values[index]).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn two_samples_give_a_line() {
+        let fit = local_fit(&[0.0, 1.0], &[1.0, 3.0], 0.1);
+        assert_eq!(fit.slope, [2.0, 2.0]);
+    }
+}

@@ -1,0 +1,305 @@
+//! One step of the classical Runge-Kutta method, and the instant within a step at which something happens.
+//!
+//! Source: Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I* (1993), II.1. Fourth order where the
+//! right-hand side is smooth. Energies are integrated beside the motion with the same weights, so that the ledger
+//! closes as well as the motion is resolved.
+
+use crate::Model;
+use crate::balance::{Command, Given, Instant, Point, Scratch};
+use crate::ledger::{MASS_CHANGE, Slots};
+use crate::model::Layout;
+
+/// What the driver does at a time, position and speed.
+pub(crate) trait Control {
+    /// Command and recorded circumstances.
+    fn at(&self, time_s: f64, position_m: f64, speed_m_s: f64) -> (Command, Given);
+}
+
+impl<F: Fn(f64, f64, f64) -> (Command, Given)> Control for F {
+    fn at(&self, time_s: f64, position_m: f64, speed_m_s: f64) -> (Command, Given) {
+        self(time_s, position_m, speed_m_s)
+    }
+}
+
+const POSITION: usize = 0;
+const SPEED: usize = 1;
+const FIRST_STATE: usize = 2;
+
+/// A model in motion.
+#[derive(Debug)]
+pub(crate) struct Machine<'a> {
+    pub model: &'a Model,
+    pub layout: Layout,
+    pub slots: Slots,
+    pub time_s: f64,
+    pub steps: usize,
+    /// Position, speed, states, energies.
+    y: Vec<f64>,
+    scratch: Scratch,
+    start: Vec<f64>,
+    stage: Vec<f64>,
+    slopes: [Vec<f64>; 4],
+    first_kinetic_j: Option<f64>,
+    mass_kg: f64,
+}
+
+impl<'a> Machine<'a> {
+    pub fn new(model: &'a Model, time_s: f64, position_m: f64, speed_m_s: f64) -> Self {
+        let (layout, slots) = (model.layout(), Slots::of(model));
+        let mut y = vec![position_m, speed_m_s];
+        y.extend(layout.states.iter().map(|(_, initial)| *initial));
+        y.resize(y.len() + slots.names.len(), 0.0);
+        let zero = vec![0.0; y.len()];
+        let scratch = Scratch { actions: vec![headland_plugin::Action::default(); model.effects.len()] };
+        Self {
+            model,
+            layout,
+            slots,
+            time_s,
+            steps: 0,
+            scratch,
+            start: zero.clone(),
+            stage: zero.clone(),
+            slopes: [zero.clone(), zero.clone(), zero.clone(), zero],
+            y,
+            first_kinetic_j: None,
+            mass_kg: f64::NAN,
+        }
+    }
+
+    pub fn position_m(&self) -> f64 {
+        self.y[POSITION]
+    }
+
+    pub fn speed_m_s(&self) -> f64 {
+        self.y[SPEED]
+    }
+
+    pub fn states(&self) -> &[f64] {
+        &self.y[FIRST_STATE..FIRST_STATE + self.layout.states.len()]
+    }
+
+    pub fn energies_j(&self) -> &[f64] {
+        &self.y[FIRST_STATE + self.layout.states.len()..]
+    }
+
+    /// Sets the motion, as at the start of a window; states and energies stay.
+    pub fn set_motion(&mut self, position_m: f64, speed_m_s: f64) {
+        self.y[POSITION] = position_m;
+        self.y[SPEED] = speed_m_s;
+    }
+
+    pub fn set_state(&mut self, index: usize, value: f64) {
+        self.y[FIRST_STATE + index] = value;
+    }
+
+    pub fn effect_actions(&self) -> &[headland_plugin::Action] {
+        &self.scratch.actions
+    }
+
+    /// The balance where the machine stands. The direction of a machine at rest is what the forces make of it.
+    pub fn instant(&mut self, control: &impl Control) -> Instant {
+        let y = std::mem::take(&mut self.y);
+        let mut slope = std::mem::take(&mut self.slopes[0]);
+        let direction = sign(y[SPEED]);
+        let instant = self.derive(self.time_s, &y, direction, control, &mut slope);
+        self.y = y;
+        self.slopes[0] = slope;
+        if self.first_kinetic_j.is_none() {
+            self.first_kinetic_j = Some(self.kinetic_j(instant.effective_mass_kg));
+            self.mass_kg = instant.effective_mass_kg;
+        } else if instant.effective_mass_kg != self.mass_kg {
+            self.book_mass(instant.effective_mass_kg);
+        }
+        instant
+    }
+
+    fn kinetic_j(&self, mass_kg: f64) -> f64 {
+        0.5 * mass_kg * self.y[SPEED] * self.y[SPEED]
+    }
+
+    /// Gain of kinetic energy since the first instant [J].
+    pub fn kinetic_gain_j(&self) -> f64 {
+        self.first_kinetic_j.map_or(0.0, |first| self.kinetic_j(self.mass_kg) - first)
+    }
+
+    fn derive(
+        &mut self,
+        time_s: f64,
+        y: &[f64],
+        direction: f64,
+        control: &impl Control,
+        slope: &mut [f64],
+    ) -> Instant {
+        let (command, given) = control.at(time_s, y[POSITION], y[SPEED]);
+        let states = self.layout.states.len();
+        let (motion, rest) = slope.split_at_mut(FIRST_STATE);
+        let (rates, powers) = rest.split_at_mut(states);
+        let point = Point { time_s, position_m: y[POSITION], speed_m_s: y[SPEED], direction };
+        let instant = self.model.balance(
+            point,
+            command,
+            &given,
+            &self.layout,
+            &self.slots,
+            &y[FIRST_STATE..FIRST_STATE + states],
+            rates,
+            powers,
+            &mut self.scratch,
+        );
+        motion[POSITION] = y[SPEED];
+        motion[SPEED] = instant.acceleration_m_s2;
+        instant
+    }
+
+    /// Steps from the instant that [`Machine::instant`] found, by `step_s` or to the first time at which `event` falls
+    /// to zero or the vehicle comes to rest. Returns the time stepped [s].
+    pub fn step(
+        &mut self,
+        first: &Instant,
+        step_s: f64,
+        control: &impl Control,
+        event: impl Fn(f64, f64, f64) -> f64,
+    ) -> f64 {
+        self.steps += 1;
+        std::mem::swap(&mut self.start, &mut self.y);
+        let from_rest = self.start[SPEED] == 0.0;
+        let direction = if from_rest { sign(first.acceleration_m_s2) } else { sign(self.start[SPEED]) };
+        let begin_s = self.time_s;
+        let measure = |y: &[f64], step: f64| {
+            let ahead = if from_rest { f64::INFINITY } else { y[SPEED] * direction };
+            event(begin_s + step, y[POSITION], y[SPEED]).min(ahead)
+        };
+        self.runge_kutta(step_s, direction, control);
+        let mut taken = step_s;
+        let end = measure(&self.y, step_s);
+        if end <= 0.0 {
+            taken = self.locate(step_s, end, direction, control, &measure);
+        }
+        let stopped = !from_rest && self.y[SPEED] * direction <= SPEED_AT_REST_M_S;
+        if direction == 0.0 || stopped || (from_rest && self.y[SPEED] * direction < 0.0) {
+            self.y[SPEED] = 0.0;
+        }
+        self.time_s = begin_s + taken;
+        taken
+    }
+
+    /// Books the kinetic energy that mass brings when it comes aboard, or is coupled, at speed.
+    fn book_mass(&mut self, mass_kg: f64) {
+        let gain = 0.5 * (mass_kg - self.mass_kg) * self.y[SPEED] * self.y[SPEED];
+        let account = FIRST_STATE + self.layout.states.len() + MASS_CHANGE;
+        self.y[account] -= gain;
+        self.mass_kg = mass_kg;
+    }
+
+    /// Moves on along a motion that is known: states and energies by the trapezoidal rule, from the rates before (as
+    /// [`Machine::rates`] gave them) to those of the new instant. Returns that instant.
+    pub fn follow(
+        &mut self,
+        time_s: f64,
+        position_m: f64,
+        speed_m_s: f64,
+        before: &[f64],
+        control: &impl Control,
+    ) -> Instant {
+        self.steps += 1;
+        let step_s = time_s - self.time_s;
+        self.start.copy_from_slice(&self.y);
+        for (value, rate) in self.y.iter_mut().zip(before).skip(FIRST_STATE) {
+            *value += step_s * rate;
+        }
+        self.time_s = time_s;
+        self.set_motion(position_m, speed_m_s);
+        let instant = self.instant(control);
+        let rates = before.iter().zip(&self.slopes[0]);
+        for ((value, start), (before, after)) in
+            self.y.iter_mut().zip(&self.start).zip(rates).skip(FIRST_STATE)
+        {
+            *value = start + 0.5 * step_s * (before + after);
+        }
+        instant
+    }
+
+    /// Rates of change at the last instant: speed, acceleration, rates of the states, powers.
+    pub fn rates(&self) -> &[f64] {
+        &self.slopes[0]
+    }
+
+    fn runge_kutta(&mut self, step_s: f64, direction: f64, control: &impl Control) {
+        /// Where the stages stand in the step.
+        const NODES: [f64; 4] = [0.0, 0.5, 0.5, 1.0];
+        for (stage, node) in NODES.into_iter().enumerate().skip(1) {
+            let mut y = std::mem::take(&mut self.stage);
+            let mut slope = std::mem::take(&mut self.slopes[stage]);
+            let lead = node * step_s;
+            for ((value, start), before) in y.iter_mut().zip(&self.start).zip(&self.slopes[stage - 1]) {
+                *value = start + lead * before;
+            }
+            self.derive(self.time_s + lead, &y, direction, control, &mut slope);
+            self.stage = y;
+            self.slopes[stage] = slope;
+        }
+        let [k1, k2, k3, k4] = &self.slopes;
+        for (index, value) in self.y.iter_mut().enumerate() {
+            let mean = (k1[index] + 2.0 * (k2[index] + k3[index]) + k4[index]) / 6.0;
+            *value = self.start[index] + step_s * mean;
+        }
+    }
+
+    /// Shortens the step until `measure` is zero (Illinois variant of the secant method).
+    fn locate(
+        &mut self,
+        step_s: f64,
+        end: f64,
+        direction: f64,
+        control: &impl Control,
+        measure: &impl Fn(&[f64], f64) -> f64,
+    ) -> f64 {
+        const MOST_ITERATIONS: usize = 60;
+        const RELATIVE_TOLERANCE: f64 = 1e-13;
+        let (mut low, mut high) = (0.0, step_s);
+        let (mut at_low, mut at_high) = (measure(&self.start, 0.0), end);
+        if at_low <= 0.0 || at_low.is_nan() {
+            return step_s;
+        }
+        let mut step = high;
+        let mut side = 0;
+        for _ in 0..MOST_ITERATIONS {
+            if at_high == 0.0 || high - low <= RELATIVE_TOLERANCE * step_s {
+                break;
+            }
+            step = if at_low.is_finite() {
+                (low * at_high - high * at_low) / (at_high - at_low)
+            } else {
+                0.5 * (low + high)
+            };
+            self.runge_kutta(step, direction, control);
+            let value = measure(&self.y, step);
+            if value > 0.0 {
+                (low, at_low) = (step, value);
+                if side == 1 {
+                    at_high *= 0.5;
+                }
+                side = 1;
+            } else {
+                (high, at_high) = (step, value);
+                if side == -1 {
+                    at_low *= 0.5;
+                }
+                side = -1;
+            }
+        }
+        if step != high {
+            step = high;
+            self.runge_kutta(step, direction, control);
+        }
+        step
+    }
+}
+
+/// Below this a speed is the rounding of a located stop.
+const SPEED_AT_REST_M_S: f64 = 1e-12;
+
+fn sign(value: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value.signum() }
+}

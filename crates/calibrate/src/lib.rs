@@ -1,0 +1,12 @@
+//! Parameter estimation from recordings.
+//!
+//! [`coastdown`] turns coast-downs into rolling resistance and road loads with honest intervals.
+//! The statistics underneath know nothing of vehicles and serve any estimation: [`least_squares`] minimises,
+//! [`clusters`] pools runs and gives intervals that survive run-to-run variation, [`separable`] says what the
+//! data cannot tell apart, [`statistics`] holds quantiles and seeded draws.
+
+pub mod clusters;
+//pub mod coastdown;
+pub mod least_squares;
+pub mod separable;
+pub mod statistics;

@@ -109,8 +109,7 @@ fn bias_reduction(own: &DMatrix<f64>, inverse: &DMatrix<f64>) -> DMatrix<f64> {
 fn power(matrix: &DMatrix<f64>, exponent: f64) -> DMatrix<f64> {
     let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(matrix.clone());
     let largest = eigenvalues.amax();
-    let raised =
-        eigenvalues.map(|value| if value > 1e-10 * largest { value.powf(exponent) } else { 0.0 });
+    let raised = eigenvalues.map(|value| if value > 1e-10 * largest { value.powf(exponent) } else { 0.0 });
     &eigenvectors * DMatrix::from_diagonal(&raised) * eigenvectors.transpose()
 }
 
@@ -193,7 +192,7 @@ impl Bootstrap {
         let pivots = sorted(&self.draws.iter().map(|(_, pivot)| pivot[index]).collect::<Vec<_>>());
         let tail = 0.5 * (1.0 - level);
         let (low, high) = (quantile_of_sorted(&pivots, tail), quantile_of_sorted(&pivots, 1.0 - tail));
-        self.enough().then(|| [estimate - high * error, estimate - low * error])
+        self.enough().then_some([estimate - high * error, estimate - low * error])
     }
 
     /// A tail of 2.5 % needs a few replicates in it.
@@ -222,11 +221,13 @@ mod tests {
     use super::*;
     use crate::statistics::{mean, standard_deviation};
 
-
     fn means(values: &[f64]) -> Vec<Cluster> {
         values
             .iter()
-            .map(|value| Cluster { information: DMatrix::from_element(1, 1, 4.0), score: DVector::from(vec![4.0 * value]) })
+            .map(|value| Cluster {
+                information: DMatrix::from_element(1, 1, 4.0),
+                score: DVector::from(vec![4.0 * value]),
+            })
             .collect()
     }
 

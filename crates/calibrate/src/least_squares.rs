@@ -70,7 +70,7 @@ pub fn minimise<P: Problem + ?Sized>(problem: &P, start: DVector<f64>, stop: &St
         };
         let predicted = predicted_decrease(&at, &step);
         let standing_still = step.amax() <= 1e-13 * x.amax();
-        if !(predicted > stop.relative_decrease * at.cost) || standing_still {
+        if predicted.is_nan() || predicted <= stop.relative_decrease * at.cost || standing_still {
             return Solution { x, at, converged: true, linearisations };
         }
         let next = &x + &step;
@@ -111,17 +111,16 @@ fn predicted_decrease(at: &Linearised, step: &DVector<f64>) -> f64 {
 mod tests {
     use super::*;
 
-
     /// Rosenbrock's valley as residuals 10(y − x²) and 1 − x; the minimum is at (1, 1).
     struct Valley;
 
     impl Problem for Valley {
         fn linearise(&self, x: &DVector<f64>) -> Linearised {
-            let residuals = DVector::from(vec![10.0 * (x[1]) - x[0] * x[0]), 1.0 - x[0]];
+            let residuals = DVector::from(vec![10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]]);
             let jacobian = DMatrix::from_row_slice(2, 2, &[-20.0 * x[0], 10.0, -1.0, 0.0]);
             Linearised {
                 cost: residuals.norm_squared(),
-                gradient: -(jacobian.transpose() * &residuals),
+                gradient: -&jacobian.transpose() * &residuals,
                 information: jacobian.transpose() * jacobian,
             }
         }
@@ -145,7 +144,11 @@ mod tests {
         struct Blind;
         impl Problem for Blind {
             fn linearise(&self, _: &DVector<f64>) -> Linearised {
-                Linearised { cost: 1.0, gradient: DVector::from(vec![0.0]), information: DMatrix::zeros(1, 1) }
+                Linearised {
+                    cost: 1.0,
+                    gradient: DVector::from(vec![0.0]),
+                    information: DMatrix::zeros(1, 1),
+                }
             }
         }
         assert!(!minimise(&Blind, DVector::from(vec![0.0]), &Stop::default()).converged);

@@ -38,13 +38,16 @@ pub fn blind_directions(information: &DMatrix<f64>, sizes: &[f64]) -> Vec<Blind>
     let mut blind = Vec::new();
     for candidate in 0..sizes.len() {
         let own = scaled[(candidate, candidate)];
-        if !(own > ROUNDING * 1e-6 * strongest) {
+        if own.is_nan() || own <= ROUNDING * 1e-6 * strongest {
             blind.push(Blind { candidate, exact: true, imitated_by: Vec::new(), deviation: f64::INFINITY });
             continue;
         }
         let imitation = imitation(&scaled, &accepted, candidate);
-        let explained: f64 =
-            accepted.iter().zip(imitation.iter()).map(|(other, beta)| beta * scaled[(*other, candidate)]).sum();
+        let explained: f64 = accepted
+            .iter()
+            .zip(imitation.iter())
+            .map(|(other, beta)| beta * scaled[(*other, candidate)])
+            .sum();
         let left = own - explained;
         let exact = left < ROUNDING * own;
         if !exact && left >= 1.0 {
@@ -77,9 +80,8 @@ fn imitation(scaled: &DMatrix<f64>, accepted: &[usize], candidate: usize) -> DVe
     let matrix = DMatrix::from_fn(accepted.len(), accepted.len(), |row, column| {
         scaled[(accepted[row], accepted[column])] / norm(accepted[row]) / norm(accepted[column])
     });
-    let target = DVector::from_fn(accepted.len(), |row, _| {
-        scaled[(accepted[row], candidate)] / norm(accepted[row])
-    });
+    let target =
+        DVector::from_fn(accepted.len(), |row, _| scaled[(accepted[row], candidate)] / norm(accepted[row]));
     let solved = matrix.cholesky().map(|cholesky| cholesky.solve(&target));
     let mut solved = solved.unwrap_or_else(|| DVector::zeros(accepted.len()));
     for (row, index) in accepted.iter().enumerate() {

@@ -1,0 +1,21 @@
+//! Scenarios: RON files that are read, checked and assembled into models.
+//!
+//! [`Document`] resolves includes and quantities and keeps the place of every character; [`Scenario`] is what the
+//! text says; [`Scenario::model`] asks a registry for the plugins. Every error names file, line and column.
+
+mod document;
+mod error;
+mod fault;
+mod location;
+mod plugins;
+mod scenario;
+#[cfg(test)]
+mod scenario_tests;
+mod schema;
+mod tree;
+
+pub use document::Document;
+pub use error::{Location, ScenarioError};
+pub use plugins::Remark;
+pub use scenario::{Free, ReplaySettings, RunSpec, Scenario};
+pub use tree::{Field, Node, Shape};

@@ -1,0 +1,513 @@
+//! A scenario that was read and checked, and the models that it stands for.
+
+use crate::document::Document;
+use crate::error::ScenarioError;
+use crate::fault;
+use crate::plugins::{Remark, bounded, build, build_all};
+use crate::schema::{DriveFile, InputFile, PhaseFile, ScenarioFile, UntilFile};
+use crate::tree::{Node, Shape};
+use headland_plugin::{Air, Bound, Registry};
+use headland_sim::{Cycle, Drive, Inputs, Model, Phase, Resistance, Start, Until, Vehicle};
+use headland_units::constants::STANDARD_GRAVITY_M_S2;
+use std::path::{Path, PathBuf};
+
+/// A scenario: text that was checked, and what it says apart from its plugins.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    document: Document,
+    /// What it is about, in its own words.
+    pub about: String,
+    /// Name of the vehicle.
+    pub vehicle_name: Option<String>,
+    /// How it is driven; `None` where it only replays recordings.
+    pub cycle: Option<Cycle>,
+    /// How recordings drive it.
+    pub replay: ReplaySettings,
+    /// Parameters that estimation may move.
+    pub free: Vec<Free>,
+    /// Its runs; empty where it is one run without a name.
+    pub runs: Vec<RunSpec>,
+    /// What is unusual about it.
+    pub remarks: Vec<Remark>,
+}
+
+/// How a recording drives the model; what is `None` is chosen by the recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReplaySettings {
+    /// What moves the model.
+    pub drive: Option<Drive>,
+    /// Recorded circumstances that the model is told.
+    pub inputs: Option<Vec<Inputs>>,
+    /// Length of the windows that start anew from the recorded speed [s].
+    pub window_s: Option<f64>,
+    /// Half width of the local fit that gives speed and acceleration of the recording [s].
+    pub smoothing_s: Option<f64>,
+    /// Longest step of the integration [s].
+    pub step_s: f64,
+}
+
+/// A parameter that estimation may move.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Free {
+    /// Dotted path of the parameter.
+    pub path: String,
+    /// Its name: the end of the path, or the path where the end is not unique.
+    pub name: String,
+    /// Prior value, in the unit of the name.
+    pub value: f64,
+    /// Prior standard deviation; `None` where nothing is known.
+    pub sd: Option<f64>,
+    /// Least and greatest value.
+    pub bounds: (f64, f64),
+}
+
+/// One run of a study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunSpec {
+    /// Its name.
+    pub id: String,
+    /// Path and RON of what differs from the scenario.
+    pub with: Vec<(String, String)>,
+}
+
+/// A driver who takes back an error of speed within about a second.
+const DRIVER_GAIN_PER_S: f64 = 1.0;
+
+/// A run that lasts longer than a day has lost its way [s].
+const LONGEST_S: f64 = 86_400.0;
+
+impl Scenario {
+    /// Reads and checks a scenario and builds its model once.
+    ///
+    /// # Errors
+    /// [`ScenarioError`] says what, where, and what was expected.
+    pub fn read(path: &Path, registry: &Registry) -> Result<Self, ScenarioError> {
+        Self::of(Document::read(path)?, registry)
+    }
+
+    /// As [`Scenario::read`], from a text; `name` stands for the file, `folder` is where its includes lie.
+    ///
+    /// # Errors
+    /// As [`Scenario::read`].
+    pub fn of_text(
+        name: &str,
+        text: &str,
+        folder: &Path,
+        registry: &Registry,
+    ) -> Result<Self, ScenarioError> {
+        Self::of(Document::of_text(name, text, folder)?, registry)
+    }
+
+    /// As [`Scenario::read`], from a document.
+    ///
+    /// # Errors
+    /// As [`Scenario::read`].
+    pub fn of(document: Document, registry: &Registry) -> Result<Self, ScenarioError> {
+        let file = parse(&document)?;
+        check_numbers(&document)?;
+        let mut remarks = Vec::new();
+        model(&document, &file, registry, &mut remarks)?;
+        let cycle = match &file.cycle {
+            Some(phases) => Some(cycle(&document, &file, phases)?),
+            None => None,
+        };
+        let replay = replay_settings(&file);
+        let free = free(&document, &file)?;
+        let runs = runs(&document)?;
+        let scenario = Self {
+            about: file.about,
+            vehicle_name: file.vehicle.name,
+            cycle,
+            replay,
+            free,
+            runs,
+            remarks,
+            document,
+        };
+        for run in &scenario.runs {
+            scenario.run(run, registry)?;
+        }
+        Ok(scenario)
+    }
+
+    /// The model.
+    ///
+    /// # Errors
+    /// As [`Scenario::read`].
+    pub fn model(&self, registry: &Registry) -> Result<Model, ScenarioError> {
+        model(&self.document, &parse(&self.document)?, registry, &mut Vec::new())
+    }
+
+    /// The resolved text and where it comes from.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// A copy with other numbers at some paths.
+    ///
+    /// # Errors
+    /// As [`Scenario::read`].
+    pub fn with(&self, changes: &[(&str, f64)], registry: &Registry) -> Result<Self, ScenarioError> {
+        Self::of(self.document.with(changes)?, registry)
+    }
+
+    /// A copy with one more effect, written as in a scenario.
+    ///
+    /// # Errors
+    /// As [`Scenario::read`].
+    pub fn with_effect(&self, effect: &str, registry: &Registry) -> Result<Self, ScenarioError> {
+        Self::of(self.document.with_effect(effect)?, registry)
+    }
+
+    /// The scenario of one of its runs.
+    ///
+    /// # Errors
+    /// As [`Scenario::read`].
+    pub fn run(&self, run: &RunSpec, registry: &Registry) -> Result<Self, ScenarioError> {
+        let changes: Vec<_> = run.with.iter().map(|(path, ron)| (path.as_str(), ron.clone())).collect();
+        let mut document = self.document.replaced(&changes)?;
+        if document.find("runs").is_some() {
+            document = document.replaced(&[("runs", "[]".to_owned())])?;
+        }
+        Self::of(document, registry)
+    }
+}
+
+fn parse(document: &Document) -> Result<ScenarioFile, ScenarioError> {
+    ron::Options::default()
+        .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
+        .from_str(document.text())
+        .map_err(|error| {
+            let whole = Node { span: 0..document.text().len(), shape: document.tree().shape.clone() };
+            fault::tell(document, &whole, "scenario", &error)
+        })
+}
+
+/// Bounds of the scenario's own numbers.
+const BOUNDS: [(&str, Bound); 17] = [
+    ("vehicle.mass_kg", Bound::Positive),
+    ("vehicle.rotating_mass_kg", Bound::NotNegative),
+    ("vehicle.drag_area_m2", Bound::NotNegative),
+    ("vehicle.road_load.f0_n", Bound::Finite),
+    ("vehicle.road_load.f1_n_s_m", Bound::Finite),
+    ("vehicle.road_load.f2_n_s2_m2", Bound::NotNegative),
+    ("vehicle.road_load.air_density_kg_m3", Bound::Positive),
+    ("air.density_kg_m3", Bound::NotNegative),
+    ("air.wind.speed_m_s", Bound::NotNegative),
+    ("air.wind.from_rad", Bound::Finite),
+    ("air.temperature_c", Bound::Within(-90.0, 70.0)),
+    ("gravity_m_s2", Bound::Positive),
+    ("driver.gain_per_s", Bound::Positive),
+    ("simulation.step_s", Bound::Positive),
+    ("simulation.longest_s", Bound::Positive),
+    ("replay.window_s", Bound::Positive),
+    ("replay.smoothing_s", Bound::Positive),
+];
+
+fn check_numbers(document: &Document) -> Result<(), ScenarioError> {
+    for (path, bound) in BOUNDS {
+        if let (Some(node), Some(value)) = (document.find(path), document.number(path)) {
+            let name = path.rsplit('.').next().unwrap_or(path);
+            bounded(document, name, value, bound, node.span.start)?;
+        }
+    }
+    Ok(())
+}
+
+/// Where files that plugins name are looked for.
+fn folder(document: &Document, file: &ScenarioFile) -> PathBuf {
+    file.folder.as_ref().map_or_else(|| document.folder().to_owned(), |folder| document.folder().join(folder))
+}
+
+fn model(
+    document: &Document,
+    file: &ScenarioFile,
+    registry: &Registry,
+    remarks: &mut Vec<Remark>,
+) -> Result<Model, ScenarioError> {
+    let folder = folder(document, file);
+    let at = |path: &str| document.find(path).map_or(0, |node| node.span.start);
+    let misfit = |name: &str, found: &str, expected: &str, path: &str| ScenarioError::Value {
+        name: name.to_owned(),
+        found: found.to_owned(),
+        expected: expected.to_owned(),
+        at: document.location(at(path)),
+    };
+    let missing = |path: &str, of: &str, field: &str| ScenarioError::MissingField {
+        field: field.to_owned(),
+        of: format!("`{of}`"),
+        at: document.location(at(path)),
+    };
+    let resistance = match (file.vehicle.drag_area_m2, &file.vehicle.road_load) {
+        (Some(area_m2), None) => Resistance::Drag { area_m2 },
+        (None, Some(load)) => Resistance::RoadLoad {
+            f0_n: load.f0_n,
+            f1_n_s_m: load.f1_n_s_m,
+            f2_n_s2_m2: load.f2_n_s2_m2,
+            air_density_kg_m3: load.air_density_kg_m3,
+        },
+        (Some(_), Some(_)) => {
+            return Err(misfit(
+                "road_load",
+                "given beside `drag_area_m2`",
+                "one of the two: road-load coefficients hold the drag already",
+                "vehicle.road_load",
+            ));
+        }
+        (None, None) => return Err(missing("vehicle", "vehicle", "drag_area_m2` or `road_load")),
+    };
+    let terrain = document.find("ground.terrain").ok_or_else(|| missing("ground", "ground", "terrain"))?;
+    let (_, terrain) =
+        build(document, terrain, &registry.terrains, "headland plugins terrain", &folder, remarks)?;
+    let soil = match (document.find("ground.soil"), file.vehicle.road_load.is_some()) {
+        (Some(node), false) => {
+            Some(build(document, node, &registry.soils, "headland plugins soil", &folder, remarks)?.1)
+        }
+        (None, true) => None,
+        (Some(_), true) => {
+            return Err(misfit(
+                "soil",
+                "given beside `vehicle.road_load`",
+                "one of the two: road-load coefficients hold the rolling resistance already",
+                "ground.soil",
+            ));
+        }
+        (None, false) => return Err(missing("ground", "ground", "soil")),
+    };
+    let driveline =
+        document.find("vehicle.driveline").ok_or_else(|| missing("vehicle", "vehicle", "driveline"))?;
+    let more = "headland plugins driveline";
+    let (_, driveline) = build(document, driveline, &registry.drivelines, more, &folder, remarks)?;
+    let tasks = build_all(document, "tasks", &registry.tasks, "headland plugins task", &folder, remarks)?;
+    let effects =
+        build_all(document, "effects", &registry.effects, "headland plugins effect", &folder, remarks)?;
+    Ok(Model {
+        vehicle: Vehicle {
+            mass_kg: file.vehicle.mass_kg,
+            rotating_mass_kg: file.vehicle.rotating_mass_kg,
+            resistance,
+        },
+        gravity_m_s2: file.gravity_m_s2.unwrap_or(STANDARD_GRAVITY_M_S2),
+        air: Air {
+            density_kg_m3: file.air.density_kg_m3,
+            wind_speed_m_s: file.air.wind.as_ref().map_or(0.0, |wind| wind.speed_m_s),
+            wind_from_rad: file.air.wind.as_ref().map_or(0.0, |wind| wind.from_rad),
+            temperature_c: file.air.temperature_c.unwrap_or(f64::NAN),
+        },
+        terrain,
+        soil,
+        driveline,
+        tasks,
+        effects,
+    })
+}
+
+fn cycle(document: &Document, file: &ScenarioFile, phases: &[PhaseFile]) -> Result<Cycle, ScenarioError> {
+    let mut driven = Vec::new();
+    for (index, phase) in phases.iter().enumerate() {
+        let bound = |field: &str, value: f64, bound: Bound| {
+            let at = document.find(&format!("cycle.{index}.{field}")).map_or(0, |node| node.span.start);
+            bounded(document, field.rsplit('.').next().unwrap_or(field), value, bound, at)
+        };
+        driven.push(match phase {
+            PhaseFile::Reach { speed_m_s, acceleration_m_s2 } => {
+                bound("speed_m_s", *speed_m_s, Bound::NotNegative)?;
+                bound("acceleration_m_s2", *acceleration_m_s2, Bound::Positive)?;
+                Phase::Reach { speed_m_s: *speed_m_s, acceleration_m_s2: *acceleration_m_s2 }
+            }
+            PhaseFile::Hold { for_s } => {
+                bound("for_s", *for_s, Bound::NotNegative)?;
+                Phase::Hold { for_s: *for_s }
+            }
+            PhaseFile::Coast { until } => Phase::Coast {
+                until: match until {
+                    UntilFile::Stopped => Until::Stopped,
+                    UntilFile::SpeedBelow { speed_m_s } => {
+                        bound("until.speed_m_s", *speed_m_s, Bound::NotNegative)?;
+                        Until::SpeedBelow(*speed_m_s)
+                    }
+                    UntilFile::Elapsed { for_s } => {
+                        bound("until.for_s", *for_s, Bound::NotNegative)?;
+                        Until::Elapsed(*for_s)
+                    }
+                    UntilFile::Travelled { distance_m } => {
+                        bound("until.distance_m", *distance_m, Bound::NotNegative)?;
+                        Until::Travelled(*distance_m)
+                    }
+                },
+            },
+            PhaseFile::Follow { times_s, speeds_m_s } => {
+                Phase::Follow { profile: profile(document, index, times_s, speeds_m_s)? }
+            }
+        });
+    }
+    let start = file.start.as_ref();
+    let start = Start {
+        position_m: start.map_or(0.0, |start| start.position_m),
+        speed_m_s: start.map_or(0.0, |start| start.speed_m_s),
+    };
+    Ok(Cycle {
+        start,
+        phases: driven,
+        driver_gain_per_s: file.driver.as_ref().map_or(DRIVER_GAIN_PER_S, |driver| driver.gain_per_s),
+        step_s: file.simulation.step_s,
+        longest_s: file.simulation.longest_s.unwrap_or(LONGEST_S),
+    })
+}
+
+fn profile(
+    document: &Document,
+    index: usize,
+    times_s: &[f64],
+    speeds_m_s: &[f64],
+) -> Result<Vec<(f64, f64)>, ScenarioError> {
+    let refuse = |name: &str, found: String, expected: &str, place: String| ScenarioError::Value {
+        name: name.to_owned(),
+        found,
+        expected: expected.to_owned(),
+        at: document.location(document.find(&place).map_or(0, |node| node.span.start)),
+    };
+    let list = |name: &str| format!("cycle.{index}.{name}");
+    if times_s.len() != speeds_m_s.len() {
+        let found = format!("a list of {}", speeds_m_s.len());
+        let expected = format!("as many speeds as times, {}", times_s.len());
+        return Err(refuse("speeds_m_s", found, &expected, list("speeds_m_s")));
+    }
+    if times_s.len() < 2 || times_s[0] != 0.0 {
+        let found = times_s.first().map_or("empty".to_owned(), |first| format!("a list from {first}"));
+        return Err(refuse("times_s", found, "two times or more, the first of them 0", list("times_s")));
+    }
+    for (at, pair) in times_s.windows(2).enumerate() {
+        if pair[1] <= pair[0] || !pair[1].is_finite() {
+            let place = format!("{}.{}", list("times_s"), at + 1);
+            return Err(refuse(
+                "times_s",
+                format!("{} after {}", pair[1], pair[0]),
+                "increasing times",
+                place,
+            ));
+        }
+    }
+    for (at, speed) in speeds_m_s.iter().enumerate() {
+        let place = format!("{}.{at}", list("speeds_m_s"));
+        let byte = document.find(&place).map_or(0, |node| node.span.start);
+        bounded(document, "speeds_m_s", *speed, Bound::NotNegative, byte)?;
+    }
+    Ok(times_s.iter().copied().zip(speeds_m_s.iter().copied()).collect())
+}
+
+fn replay_settings(file: &ScenarioFile) -> ReplaySettings {
+    let replay = file.replay.as_ref();
+    ReplaySettings {
+        drive: replay.and_then(|replay| replay.drive).map(|drive| match drive {
+            DriveFile::Speed => Drive::Speed,
+            DriveFile::Torque => Drive::Torque,
+            DriveFile::Force => Drive::Force,
+            DriveFile::Coast => Drive::Coast,
+        }),
+        inputs: replay.and_then(|replay| replay.inputs.as_ref()).map(|inputs| {
+            let input = |input: &InputFile| match input {
+                InputFile::Grade => Inputs::Grade,
+                InputFile::Heading => Inputs::Heading,
+                InputFile::Curvature => Inputs::Curvature,
+                InputFile::Wind => Inputs::Wind,
+                InputFile::AirTemperature => Inputs::AirTemperature,
+                InputFile::AuxiliaryPower => Inputs::AuxiliaryPower,
+                InputFile::DrawbarForce => Inputs::DrawbarForce,
+                InputFile::Coasting => Inputs::Coasting,
+            };
+            inputs.iter().map(input).collect()
+        }),
+        window_s: replay.and_then(|replay| replay.window_s),
+        smoothing_s: replay.and_then(|replay| replay.smoothing_s),
+        step_s: file.simulation.step_s,
+    }
+}
+
+fn free(document: &Document, file: &ScenarioFile) -> Result<Vec<Free>, ScenarioError> {
+    let mut all = Vec::new();
+    for (index, parameter) in file.free.iter().enumerate() {
+        let place =
+            |field: &str| document.find(&format!("free.{index}.{field}")).map_or(0, |node| node.span.start);
+        let refuse = |name: &str, found: String, expected: &str| ScenarioError::Value {
+            name: name.to_owned(),
+            found,
+            expected: expected.to_owned(),
+            at: document.location(place(name)),
+        };
+        let path = document.resolve(&parameter.name).map_err(|_| {
+            let found = format!("\"{}\", which names no one number of the scenario", parameter.name);
+            refuse("name", found, "the dotted path of a number, as in \"vehicle.mass_kg\"")
+        })?;
+        let Some(stands) = document.number(&path) else {
+            return Err(refuse("name", format!("\"{path}\", which is no number"), "the path of a number"));
+        };
+        let value = parameter.value.unwrap_or(stands);
+        let bounds = parameter.bounds.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        if !value.is_finite() {
+            return Err(refuse("value", value.to_string(), "a finite number"));
+        }
+        if parameter.sd.is_some_and(|sd| sd.is_nan() || sd <= 0.0) {
+            return Err(refuse("sd", format!("{:?}", parameter.sd), "more than 0"));
+        }
+        if !(bounds.0 < bounds.1 && bounds.0 <= value && value <= bounds.1) {
+            let found = format!("({}, {})", bounds.0, bounds.1);
+            return Err(refuse("bounds", found, &format!("(least, greatest) about the value {value}")));
+        }
+        all.push(Free { path, name: String::new(), value, sd: parameter.sd, bounds });
+    }
+    let ends: Vec<String> =
+        all.iter().map(|one| one.path.rsplit('.').next().unwrap_or("").to_owned()).collect();
+    for (index, one) in all.iter_mut().enumerate() {
+        let unique = ends.iter().filter(|end| **end == ends[index]).count() == 1;
+        one.name = if unique { ends[index].clone() } else { one.path.clone() };
+    }
+    Ok(all)
+}
+
+/// The runs of a study; their values are taken as they are written.
+fn runs(document: &Document) -> Result<Vec<RunSpec>, ScenarioError> {
+    let Some(Node { shape: Shape::List(values), .. }) = document.find("runs") else { return Ok(Vec::new()) };
+    let mut all: Vec<RunSpec> = Vec::new();
+    for node in values {
+        let id = match node.field("id").map(|field| &field.value) {
+            Some(Node { shape: Shape::Text(id), .. }) => id.clone(),
+            _ => continue,
+        };
+        let refuse = |name: &str, found: &str, expected: &str, at: usize| ScenarioError::Value {
+            name: name.to_owned(),
+            found: found.to_owned(),
+            expected: expected.to_owned(),
+            at: document.location(at),
+        };
+        let usable =
+            !id.is_empty() && id.chars().all(|c| c.is_alphanumeric() || matches!(c, '_' | '-' | '.'));
+        if !usable || all.iter().any(|other| other.id == id) {
+            let at = node.field("id").map_or(node.span.start, |field| field.value.span.start);
+            return Err(refuse(
+                "id",
+                &format!("\"{id}\""),
+                "a name of its own of letters, digits, `_`, `-`, `.`",
+                at,
+            ));
+        }
+        let mut with = Vec::new();
+        if let Some(Node { shape: Shape::Map(entries), .. }) = node.field("with").map(|field| &field.value) {
+            for (key, value) in entries {
+                let Shape::Text(path) = &key.shape else { continue };
+                if document.find(path).is_none() || path == "runs" {
+                    let found = format!("\"{path}\", which the scenario does not have");
+                    return Err(refuse(
+                        "with",
+                        &found,
+                        "the dotted path of a value that stands there",
+                        key.span.start,
+                    ));
+                }
+                with.push((path.clone(), document.text()[value.span.clone()].to_owned()));
+            }
+        }
+        all.push(RunSpec { id, with });
+    }
+    Ok(all)
+}

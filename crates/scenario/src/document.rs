@@ -262,11 +262,11 @@ impl Builder {
     fn file(
         &mut self,
         path: &Path,
-        from: Option<Location>,
+        from: Option<&Location>,
         open: &mut Vec<PathBuf>,
     ) -> Result<Rc<Source>, ScenarioError> {
         let unreadable =
-            |reason: String| ScenarioError::File { path: path.to_owned(), reason, at: from.clone() };
+            |reason: String| ScenarioError::File { path: path.to_owned(), reason, at: from.cloned() };
         let bytes = if path.is_dir() {
             return Err(unreadable("is a folder, expected a RON file".to_owned()));
         } else {
@@ -311,7 +311,7 @@ impl Builder {
                 Replacement::Number(value) => self.push(&format!("{value:?}"), source, span.start, true),
                 Replacement::File(name) => {
                     let from = Location::of(&source.path, &source.text, span.start, span.len());
-                    self.file(&folder.join(name), Some(from), open)?;
+                    self.file(&folder.join(name), Some(&from), open)?;
                 }
             }
             at = span.end;

@@ -3,6 +3,8 @@
 //! [`Document`] resolves includes and quantities and keeps the place of every character; [`Scenario`] is what the
 //! text says; [`Scenario::model`] asks a registry for the plugins. Every error names file, line and column.
 
+#![allow(clippy::result_large_err, reason = "a scenario is refused once, not in a loop")]
+
 mod document;
 mod error;
 mod fault;

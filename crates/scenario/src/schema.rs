@@ -152,6 +152,7 @@ pub enum InputFile {
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "run")]
+#[allow(clippy::zero_sized_map_values, reason = "the registry reads the values")]
 #[allow(dead_code, reason = "its values are taken from the text")]
 pub struct RunFile {
     pub id: String,

@@ -137,14 +137,13 @@ impl<'a> Reader<'a> {
     }
 
     fn broken(&self, expected: &'static str) -> Broken {
-        let found = match self.peek() {
-            None => "the end of the file".to_owned(),
-            Some(_) => {
-                let word: String =
-                    self.rest().chars().take_while(|c| c.is_alphanumeric() || *c == '_').take(30).collect();
-                let first = self.rest().chars().take(1).collect();
-                format!("`{}`", if word.is_empty() { first } else { word })
-            }
+        let found = if self.peek().is_none() {
+            "the end of the file".to_owned()
+        } else {
+            let word: String =
+                self.rest().chars().take_while(|c| c.is_alphanumeric() || *c == '_').take(30).collect();
+            let first = self.rest().chars().take(1).collect();
+            format!("`{}`", if word.is_empty() { first } else { word })
         };
         Broken { at: self.at, found, expected }
     }

@@ -14,7 +14,8 @@ pub fn autocorrelation(values: &[f64], lag: usize) -> Option<f64> {
     }
     let mean = mean(values);
     let spread: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    let shared: f64 = values.iter().zip(&values[lag..]).map(|(early, late)| (early - mean) * (late - mean)).sum();
+    let shared: f64 =
+        values.iter().zip(&values[lag..]).map(|(early, late)| (early - mean) * (late - mean)).sum();
     (spread > 0.0).then(|| shared / spread)
 }
 

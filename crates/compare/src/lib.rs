@@ -8,33 +8,34 @@
 //! No single number is enough: totals are blind to errors that cancel, a cumulative probability is blind to the order
 //! in time, and every error of a shape grows with a delay. So each comparison carries all of them.
 
-// mod align;
+pub mod align;
 pub mod autocorrelation;
-// pub mod cdf;
-// mod direction;
-// pub mod dtw;
+pub mod cdf;
+pub mod direction;
+pub mod dtw;
 mod error;
-// pub mod iso18571;
-// pub mod lag;
+pub mod iso18571;
+pub mod lag;
 // mod metrics;
+// mod requirement;
 // mod runs;
 pub mod sprague_geers;
 pub mod statistics;
 // mod summary;
 pub mod theil;
-// pub mod total;
-// mod unit_text;
+pub mod total;
 
+pub use align::{Aligned, Dropped, align};
 pub use autocorrelation::{LjungBox, autocorrelation_lag1, effective_sample_size, ljung_box};
-// pub use cdf::{CdfComparison, CdfPoint, band_half_width, cdf_comparison};
+pub use cdf::{CdfComparison, CdfPoint, band_half_width, cdf_comparison};
 pub use error::CompareError;
-// pub use iso18571::{Grade, IsoRating, iso18571};
-// pub use lag::cross_correlation_lag_s;
+pub use iso18571::{Grade, IsoRating, iso18571};
+pub use lag::{Lag, cross_correlation_lag};
 // pub use metrics::{Metrics, Regression, metrics};
-// pub use runs::{ChannelComparison, RunComparison, Skipped, compare_runs};
+// pub use requirement::{Check, Metric, Relation, Requirement};
+// pub use runs::{ChannelComparison, RunComparison, Skipped, WhySkipped, compare_runs, compare_traces};
 pub use sprague_geers::{Russell, SpragueGeers, russell, sprague_geers};
 pub use statistics::quantile;
-// pub use summary::{ChannelSummary, RunError, Summary, TotalSummary, summarise};
+// pub use summary::{ChannelSummary, Summary, summarise};
 pub use theil::{Theil, theil};
-// pub use total::{CRITERION, Integral, Total, integral, total};
-// pub use unit_text::{integral_unit, unit_text};
+pub use total::{CRITERION, Total, integral, integral_unit, total};

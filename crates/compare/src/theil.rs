@@ -25,7 +25,8 @@ pub struct Theil {
 
 /// Theil's inequality of two signals of one length; NaN of no samples.
 pub fn theil(measured: &[f64], modelled: &[f64]) -> Theil {
-    let errors: Vec<f64> = modelled.iter().zip(measured).map(|(modelled, measured)| modelled - measured).collect();
+    let errors: Vec<f64> =
+        modelled.iter().zip(measured).map(|(modelled, measured)| modelled - measured).collect();
     let mse = mean_square(&errors);
     if mse == 0.0 {
         return Theil { u1: 0.0, bias_share: 0.0, variance_share: 0.0, covariance_share: 0.0 };

@@ -133,13 +133,13 @@ impl ElectricSingleSpeed {
     }
 
     /// The most that the battery gives: U² / 4R.
-    fn most_w(&self, open_circuit_v: f64) -> f64 {
-        open_circuit_v * open_circuit_v / (4.0 * self.resistance_ohm)
+    fn most_w(open_circuit_v: f64, resistance_ohm: f64) -> f64 {
+        open_circuit_v * open_circuit_v / (4.0 * resistance_ohm)
     }
 
-    fn battery(&self, open_circuit_v: f64, power_w: f64) -> Battery {
-        let (u, r) = (open_circuit_v, self.resistance_ohm);
-        let given = power_w.min(self.most_w(u));
+    fn battery(open_circuit_v: f64, resistance_ohm: f64, power_w: f64) -> Battery {
+        let (u, r) = (open_circuit_v, resistance_ohm);
+        let given = power_w.min(Self::most_w(u, r));
         // The lesser root of R I² − U I + P = 0, in the form that has no difference of like numbers and allows R = 0.
         let current_a = 2.0 * given / (u + (u * u - 4.0 * r * given).max(0.0).sqrt());
         Battery { current_a, loss_w: r * current_a * current_a, beyond_w: power_w - given }
@@ -194,12 +194,13 @@ impl Driveline for ElectricSingleSpeed {
         let (u, eta) = (self.open_circuit_v(charge), self.drive_efficiency);
         let shaft = demand.shaft_power_w / eta;
         let others = self.standby_power_w + demand.auxiliary_power_w + shaft;
-        let torque = self.torque_n_m(demand, self.most_w(u) - others, charge);
+        let r = (self.resistance_ohm + demand.battery_resistance_ohm).max(0.0);
+        let torque = self.torque_n_m(demand, Self::most_w(u, r) - others, charge);
         let omega = self.leverage_per_m() * demand.speed_m_s;
         let mechanical = torque * omega;
         let electric = if mechanical >= 0.0 { mechanical / eta } else { mechanical * eta };
         let force_n = self.force_of_torque_n(torque, demand.speed_m_s).unwrap_or_default();
-        let Battery { current_a, loss_w, beyond_w } = self.battery(u, electric + others);
+        let Battery { current_a, loss_w, beyond_w } = Self::battery(u, r, electric + others);
         let source_power_w = u * current_a + beyond_w;
         if let Some(rate) = rates.first_mut() {
             *rate = -source_power_w / (u * S_PER_H * self.capacity_a_h);
@@ -211,7 +212,7 @@ impl Driveline for ElectricSingleSpeed {
         delivery.readings = Readings {
             motor_speed_rad_s: omega,
             motor_torque_n_m: torque,
-            battery_voltage_v: u - self.resistance_ohm * current_a,
+            battery_voltage_v: u - r * current_a,
             battery_current_a: source_power_w / u,
             ..Readings::NONE
         };

@@ -93,6 +93,15 @@ fn in_neutral_the_battery_serves_the_other_consumers_alone() {
 }
 
 #[test]
+fn resistance_that_is_added_is_as_good_as_its_own() {
+    let added = Demand { battery_resistance_ohm: 0.05, ..asked(20.0, 1000.0) };
+    let own = ElectricSingleSpeed { resistance_ohm: 0.17, ..drive() };
+    let (one, two) = (deliver(&drive(), &added, 0.5).0, deliver(&own, &asked(20.0, 1000.0), 0.5).0);
+    assert!((one.readings.battery_voltage_v - two.readings.battery_voltage_v).abs() < 1e-9);
+    assert!((one.losses_w[0] - two.losses_w[0]).abs() < 1e-9 && one.losses_w[0] > 0.0);
+}
+
+#[test]
 fn a_battery_without_resistance_loses_nothing() {
     let ideal = ElectricSingleSpeed { resistance_ohm: 0.0, ..drive() };
     let (delivery, _) = deliver(&ideal, &asked(20.0, 1000.0), 0.5);
@@ -114,7 +123,14 @@ proptest! {
         speed_m_s in -45.0f64..45.0, force_n in -2e4f64..2e4, auxiliary_power_w in 0.0f64..8e3,
         shaft_power_w in prop_oneof![Just(0.0), 0.0f64..5e5], charge in -0.01f64..1.01, coasting: bool,
     ) {
-        let demand = Demand { speed_m_s, force_n, coasting, auxiliary_power_w, shaft_power_w };
+        let demand = Demand {
+            speed_m_s,
+            force_n,
+            coasting,
+            auxiliary_power_w,
+            shaft_power_w,
+            ..Demand::default()
+        };
         let (delivery, rate) = deliver(&drive(), &demand, charge);
         let wheels = delivery.force_n * speed_m_s;
         let taken = wheels + delivery.losses_w.iter().sum::<f64>() + auxiliary_power_w + shaft_power_w;

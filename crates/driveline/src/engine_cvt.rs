@@ -108,20 +108,20 @@ struct Engine {
 }
 
 impl EngineCvt {
-    /// Power of friction at an engine speed: p_me0 V_d ω / 4π.
-    fn friction_w(&self, speed: f64) -> f64 {
-        self.willans_friction_pa * self.displacement_m3 * speed / (4.0 * PI)
+    /// Power of friction at an engine speed: (p_me0 V_d / 4π + T_extra) ω.
+    fn friction_w(&self, speed: f64, extra_n_m: f64) -> f64 {
+        (self.willans_friction_pa * self.displacement_m3 / (4.0 * PI) + extra_n_m).max(0.0) * speed
     }
 
-    fn engine(&self, power: f64) -> Engine {
-        let idle_friction = self.friction_w(self.idle_speed_rad_s);
+    fn engine(&self, power: f64, extra_n_m: f64) -> Engine {
+        let idle_friction = self.friction_w(self.idle_speed_rad_s, extra_n_m);
         if power < -idle_friction {
             // Fuel is cut off and friction takes what the wheels give.
             return Engine { speed: self.idle_speed_rad_s * (-power / idle_friction), fuel_power: 0.0 };
         }
         let speed = self.curve.lowest_speed(power / self.load_share);
         // The Willans line times V_d ω / 4π, solved for the power of the fuel.
-        Engine { speed, fuel_power: (power + self.friction_w(speed)) / self.willans_efficiency }
+        Engine { speed, fuel_power: (power + self.friction_w(speed, extra_n_m)) / self.willans_efficiency }
     }
 
     /// The force of those asked for that engine and transmission can make, with `others` taken from the shaft.
@@ -133,7 +133,8 @@ impl EngineCvt {
         let force = demand.force_n.clamp(-self.max_force_n, self.max_force_n);
         let power = force * v;
         let most = eta * (self.curve.peak_power() - others).max(0.0);
-        let least = -(self.friction_w(self.curve.last_speed()) + others) / eta;
+        let friction = self.friction_w(self.curve.last_speed(), demand.engine_friction_n_m);
+        let least = -(friction + others) / eta;
         if power > most {
             most / v
         } else if power < least {
@@ -165,7 +166,7 @@ impl Driveline for EngineCvt {
         let eta = self.transmission_efficiency;
         let transmission_input = if wheels > 0.0 { wheels / eta } else { wheels * eta };
         let power = transmission_input + others;
-        let Engine { speed, fuel_power } = self.engine(power);
+        let Engine { speed, fuel_power } = self.engine(power, demand.engine_friction_n_m);
 
         let mut delivery = Delivery { force_n, source_power_w: fuel_power, ..Delivery::NOTHING };
         delivery.losses_w[0] = fuel_power - power;

@@ -67,6 +67,16 @@ fn in_neutral_it_idles_and_pulls_nothing() {
     assert!(delivery.readings.cvt_ratio.is_nan());
 }
 
+/// 10 N m of friction more at ω take 10 ω more of indicated work, 10 ω / e of fuel; the shaft gives the same.
+#[test]
+fn added_friction_costs_fuel_by_the_slope_of_the_willans_line() {
+    let before = engine().deliver(&asked(5.0, 20e3), &[], &mut []);
+    let after = engine().deliver(&Demand { engine_friction_n_m: 10.0, ..asked(5.0, 20e3) }, &[], &mut []);
+    let expected = 10.0 * before.readings.engine_speed_rad_s / engine().willans_efficiency;
+    assert!(((after.source_power_w - before.source_power_w) / expected - 1.0).abs() < 1e-9);
+    assert_eq!(after.readings.engine_torque_n_m, before.readings.engine_torque_n_m);
+}
+
 #[test]
 fn the_wheels_get_at_most_what_full_load_gives() {
     let delivery = engine().deliver(&asked(10.0, 90e3), &[], &mut []);
@@ -119,7 +129,14 @@ proptest! {
         speed_m_s in -20.0f64..20.0, force_n in -2e5f64..2e5, auxiliary_power_w in 0.0f64..2e4,
         shaft_power_w in prop_oneof![Just(0.0), 0.0f64..4e5], coasting: bool,
     ) {
-        let demand = Demand { speed_m_s, force_n, coasting, auxiliary_power_w, shaft_power_w };
+        let demand = Demand {
+            speed_m_s,
+            force_n,
+            coasting,
+            auxiliary_power_w,
+            shaft_power_w,
+            ..Demand::default()
+        };
         let engine = engine();
         let delivery = engine.deliver(&demand, &[], &mut []);
         let size = delivery.source_power_w.abs() + (delivery.force_n * speed_m_s).abs() + 1.0;

@@ -9,7 +9,7 @@ pub const MAX_LOSSES: usize = 8;
 /// What is asked of a driveline.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
-    /// Speed over ground [m/s].
+    /// Speed at which the wheels roll [m/s]: that over ground where they do not slip.
     pub speed_m_s: f64,
     /// Force wanted at the wheels, forward [N]; negative to slow down.
     pub force_n: f64,
@@ -19,6 +19,10 @@ pub struct Demand {
     pub auxiliary_power_w: f64,
     /// Mechanical power that is taken from the engine or motor: power take-off and hydraulics [W].
     pub shaft_power_w: f64,
+    /// Friction torque at the combustion engine, beside its own [N m]; nothing to a driveline without one.
+    pub engine_friction_n_m: f64,
+    /// Resistance of the battery, beside its own [Ω]; nothing to a driveline without one.
+    pub battery_resistance_ohm: f64,
 }
 
 /// What a driveline shows on its instruments; NaN for those that it does not have.

@@ -8,7 +8,8 @@ use std::fmt::Debug;
 pub struct Action {
     /// Force on the vehicle, forward [N], whether it moves or not.
     pub force_n: f64,
-    /// Force against the motion [N], 0 or more; it holds a vehicle at rest and never moves it.
+    /// Force against the motion [N]; it holds a vehicle at rest and never moves it. Negative where the model resists too
+    /// much: the resistances together are never less than 0.
     pub resistance_n: f64,
     /// Mass that is added to inertia and weight [kg].
     pub mass_kg: f64,
@@ -18,6 +19,16 @@ pub struct Action {
     pub auxiliary_power_w: f64,
     /// Mechanical power that is taken from the engine or motor [W].
     pub shaft_power_w: f64,
+    /// Drag area that is added to the body [m²]: `force_n` holds its drag, other effects learn of it from their situation.
+    pub drag_area_m2: f64,
+    /// Share of the force at the wheels, driving or braking, that is lost against the motion before it reaches the ground.
+    pub loss_share: f64,
+    /// Slip for each newton at the wheels [1/N]: they turn as if the speed were v / (1 − s).
+    pub slip_per_n: f64,
+    /// Friction torque at the engine, beside its own [N m].
+    pub engine_friction_n_m: f64,
+    /// Resistance of the battery, beside its own [Ω].
+    pub battery_resistance_ohm: f64,
 }
 
 /// One piece of physics.
@@ -28,5 +39,19 @@ pub trait Effect: Debug + Send + Sync {
     }
 
     /// What it does at this instant, and how its states change (`rates`, one for each state, per second).
+    ///
+    /// Where some effect adds mass or drag area, all are asked again with the sums in `at`; so mass and drag area that
+    /// an effect adds must not depend on them. The force at the wheels is not known yet.
     fn act(&self, at: &Situation, states: &[f64], rates: &mut [f64]) -> Action;
+
+    /// Least and greatest force at the wheels [N] that it allows the driveline; recorded forces are beyond its reach.
+    fn limits_n(&self, at: &Situation, states: &[f64]) -> (f64, f64) {
+        let _ = (at, states);
+        (f64::NEG_INFINITY, f64::INFINITY)
+    }
+
+    /// How states change that follow the force that is wanted at the wheels, `at.tractive_force_n`; asked after `act`.
+    fn follow(&self, at: &Situation, states: &[f64], rates: &mut [f64]) {
+        let _ = (at, states, rates);
+    }
 }

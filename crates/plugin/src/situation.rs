@@ -32,8 +32,12 @@ pub struct Situation {
     pub place: Place,
     /// The air around.
     pub air: Air,
+    /// Drag coefficient times frontal area of the body [m²].
+    pub drag_area_m2: f64,
     /// Whether the driveline is in neutral.
     pub coasting: bool,
+    /// Whether a recording says that the service brakes are on.
+    pub braking: bool,
     /// Force of the driven wheels on the vehicle, forward [N].
     pub tractive_force_n: f64,
 }

@@ -1,7 +1,8 @@
 //! The balance of forces and of powers at one instant.
 //!
-//! (m + m_rot) dv/dt = F_drive − F_brake − F_soil + F_air − m g sin θ − F_drawbar + Σ F_effect
+//! (m + m_rot) dv/dt = F_drive − ε |F_drive| − F_brake − F_soil + F_air − m g sin θ − F_drawbar + Σ F_effect
 //!
+//! ε is the share that effects take of the force at the wheels, and v / (1 − s) the speed at which slipping wheels roll.
 //! Source: Newton's second law along the path, with rotating parts reduced to the wheel
 //! (Mitschke and Wallentowitz, *Dynamik der Kraftfahrzeuge* (2014), chapter A).
 
@@ -32,6 +33,7 @@ pub(crate) struct Given {
     pub air: Option<Air>,
     pub auxiliary_power_w: Option<f64>,
     pub drawbar_force_n: Option<f64>,
+    pub braking: bool,
 }
 
 /// Everything that is known at one instant.
@@ -49,7 +51,26 @@ pub(crate) struct Instant {
     pub auxiliary_power_w: f64,
     pub pto_power_w: f64,
     pub hydraulic_power_w: f64,
+    /// Speed at which the wheels roll.
+    pub wheel_speed_m_s: f64,
+    /// Power that slip takes for each 1/N of it [W N].
+    pub slip_w_n: f64,
 }
+
+impl Instant {
+    /// Force of an effect against the motion, what it takes of the wheels' force included [N].
+    pub fn resistance_n(&self, action: &Action) -> f64 {
+        action.resistance_n + action.loss_share * self.delivery.force_n.abs()
+    }
+
+    /// Power that an effect takes beside its forces [W].
+    pub fn power_w(&self, action: &Action) -> f64 {
+        action.auxiliary_power_w + action.shaft_power_w + action.slip_per_n * self.slip_w_n
+    }
+}
+
+/// A wheel that slips more than this only spins.
+const MOST_SLIP: f64 = 0.9;
 
 /// Time, place and motion at which the balance is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -85,26 +106,16 @@ impl Model {
         powers: &mut [f64],
         scratch: &mut Scratch,
     ) -> Instant {
-        let Point { position_m, speed_m_s, direction, .. } = point;
+        let Point { speed_m_s, direction, .. } = point;
         let mut situation = self.situation(point, command, given);
         let sums = self.sums(&mut situation, given, layout, states, rates, scratch);
         let place = situation.place;
-        let air = situation.air;
 
         let rolling_speed = (speed_m_s * direction).max(0.0);
         let weight_n = situation.mass_kg * self.gravity_m_s2;
-        let (ground_n, air_n) = match self.vehicle.resistance {
-            Resistance::Drag { area_m2 } => {
-                let contact =
-                    Contact { load_n: weight_n * place.cos_slope(), speed_m_s: rolling_speed, position_m };
-                let soil = self.soil.as_ref().map_or(0.0, |soil| soil.resistance_n(&contact));
-                (soil, air.drag_n(area_m2, speed_m_s, place.heading_rad))
-            }
-            Resistance::RoadLoad { f0_n, f1_n_s_m, f2_n_s2_m2, air_density_kg_m3 } => {
-                let area_m2 = 2.0 * f2_n_s2_m2 / air_density_kg_m3;
-                (f0_n + f1_n_s_m * rolling_speed, air.drag_n(area_m2, speed_m_s, place.heading_rad))
-            }
-        };
+        let (ground_n, air_n) = self.ground_and_air_n(&situation, rolling_speed);
+        // An effect may say that the ground resists less, and never that it drives.
+        let ground_n = ground_n.max(-(sums.resistance_n + sums.drawbar_n));
         let slope_n = weight_n * place.sin_slope;
         let effective_mass_kg = situation.mass_kg + sums.rotating_kg;
         let free_n = air_n - slope_n + sums.pushed_n;
@@ -118,26 +129,43 @@ impl Model {
             coasting: situation.coasting,
             auxiliary_power_w: sums.auxiliary_power_w,
             shaft_power_w,
+            engine_friction_n_m: sums.engine_friction_n_m,
+            battery_resistance_ohm: sums.battery_resistance_ohm,
         };
-        demand.force_n = match command {
+        let lost_n = |force_n: f64| sums.loss_share * force_n.abs();
+        let wanted_n = match command {
             Command::Coast => 0.0,
             Command::Recorded(force_n) => force_n,
             Command::Accelerate(wanted) => {
                 let way = if direction == 0.0 { 1.0 } else { direction };
                 let resting = speed_m_s == 0.0 && wanted == 0.0;
-                if resting { 0.0 } else { effective_mass_kg * wanted - free_n + way * held_n }
+                let ground_n = if resting { 0.0 } else { effective_mass_kg * wanted - free_n + way * held_n };
+                // F − way ε |F| = ground.
+                ground_n / (1.0 - sums.loss_share * (way * ground_n).signum())
             }
         };
-        let mut delivery = self.driveline.deliver(&demand, &states[range.clone()], &mut rates[range]);
+        situation.tractive_force_n = wanted_n;
+        demand.force_n = self.govern(&situation, command, layout, states, rates);
+        let slip_of = |force_n: f64| {
+            let slip = (sums.slip_per_n * force_n * direction).clamp(-MOST_SLIP, MOST_SLIP);
+            speed_m_s / (1.0 - slip)
+        };
+        demand.speed_m_s = slip_of(demand.force_n);
+        let mut delivery = self.driveline.deliver(&demand, &states[range.clone()], &mut rates[range.clone()]);
+        if sums.slip_per_n != 0.0 && delivery.force_n != demand.force_n {
+            demand.speed_m_s = slip_of(delivery.force_n);
+            delivery = self.driveline.deliver(&demand, &states[range.clone()], &mut rates[range]);
+        }
         if let Command::Recorded(force_n) = command {
             // The recording has the last word on the force; what the model would not have given is made up by no one.
-            delivery.source_power_w += (force_n - delivery.force_n) * speed_m_s;
+            delivery.source_power_w += (force_n - delivery.force_n) * demand.speed_m_s;
             delivery.force_n = force_n;
         }
         situation.tractive_force_n = delivery.force_n;
         let brake_n = match command {
             Command::Accelerate(_) if direction != 0.0 => {
-                ((delivery.force_n - demand.force_n) * direction).max(0.0)
+                let short_n = (delivery.force_n - wanted_n) * direction;
+                (short_n - lost_n(delivery.force_n) + lost_n(wanted_n)).max(0.0)
             }
             // A driver who wants to stand still keeps a foot on the brake.
             Command::Accelerate(wanted) if wanted <= 0.0 => f64::INFINITY,
@@ -146,7 +174,7 @@ impl Model {
 
         // Motion takes every resistance with it; at rest they only hold against what pushes.
         let driving_n = delivery.force_n + free_n;
-        let resisting_n = held_n + brake_n;
+        let resisting_n = held_n + lost_n(delivery.force_n) + brake_n;
         let way = if direction != 0.0 {
             direction
         } else if driving_n.abs() <= resisting_n {
@@ -171,9 +199,56 @@ impl Model {
             auxiliary_power_w: sums.auxiliary_power_w,
             pto_power_w: sums.pto_power_w,
             hydraulic_power_w: sums.hydraulic_power_w,
+            wheel_speed_m_s: demand.speed_m_s,
+            slip_w_n: if sums.slip_per_n == 0.0 {
+                0.0
+            } else {
+                delivery.force_n * (demand.speed_m_s - speed_m_s) / sums.slip_per_n
+            },
         };
         book(&instant, way, given, slots, &scratch.actions, powers);
         instant
+    }
+
+    /// Resistance of the ground, and force of the air, forward [N].
+    fn ground_and_air_n(&self, situation: &Situation, rolling_speed: f64) -> (f64, f64) {
+        let Situation { position_m, speed_m_s, place, air, .. } = *situation;
+        let weight_n = situation.mass_kg * self.gravity_m_s2;
+        match self.vehicle.resistance {
+            Resistance::Drag { area_m2 } => {
+                let contact =
+                    Contact { load_n: weight_n * place.cos_slope(), speed_m_s: rolling_speed, position_m };
+                let soil = self.soil.as_ref().map_or(0.0, |soil| soil.resistance_n(&contact));
+                (soil, air.drag_n(area_m2, speed_m_s, place.heading_rad))
+            }
+            Resistance::RoadLoad { f0_n, f1_n_s_m, f2_n_s2_m2, air_density_kg_m3 } => {
+                let area_m2 = 2.0 * f2_n_s2_m2 / air_density_kg_m3;
+                // The constant part goes with the mass: UN GTR 15, annex 4, correction K1.
+                let carried = situation.mass_kg / self.vehicle.mass_kg;
+                let road = carried * f0_n + f1_n_s_m * rolling_speed;
+                (road, air.drag_n(area_m2, speed_m_s, place.heading_rad))
+            }
+        }
+    }
+
+    /// The force to ask of the driveline where `situation` holds the one that is wanted.
+    fn govern(
+        &self,
+        situation: &Situation,
+        command: Command,
+        layout: &Layout,
+        states: &[f64],
+        rates: &mut [f64],
+    ) -> f64 {
+        let (mut least_n, mut most_n) = (f64::NEG_INFINITY, f64::INFINITY);
+        for (effect, range) in self.effects.iter().zip(&layout.effects) {
+            let states = &states[range.clone()];
+            effect.plugin.follow(situation, states, &mut rates[range.clone()]);
+            let (least, most) = effect.plugin.limits_n(situation, states);
+            (least_n, most_n) = (least_n.max(least), most_n.min(most));
+        }
+        let wanted_n = situation.tractive_force_n;
+        if let Command::Accelerate(_) = command { wanted_n.max(least_n).min(most_n) } else { wanted_n }
     }
 
     /// Where the vehicle is, and in what air.
@@ -196,7 +271,14 @@ impl Model {
             gravity_m_s2: self.gravity_m_s2,
             place,
             air: given.air.unwrap_or(self.air),
+            drag_area_m2: match self.vehicle.resistance {
+                Resistance::Drag { area_m2 } => area_m2,
+                Resistance::RoadLoad { f2_n_s2_m2, air_density_kg_m3, .. } => {
+                    2.0 * f2_n_s2_m2 / air_density_kg_m3
+                }
+            },
             coasting: command == Command::Coast,
+            braking: given.braking,
             tractive_force_n: 0.0,
         }
     }
@@ -217,19 +299,27 @@ impl Model {
             drawbar_n: given.drawbar_force_n.unwrap_or(0.0),
             ..Sums::default()
         };
-        let mut mass_kg = situation.mass_kg;
-        for (index, effect) in self.effects.iter().enumerate() {
-            let range = layout.effects[index].clone();
-            let action = effect.plugin.act(situation, &states[range.clone()], &mut rates[range]);
-            mass_kg += action.mass_kg;
+        self.ask(situation, layout, states, rates, scratch);
+        let (mass_kg, area_m2) = scratch
+            .actions
+            .iter()
+            .fold((0.0, 0.0), |(mass, area), action| (mass + action.mass_kg, area + action.drag_area_m2));
+        if mass_kg != 0.0 || area_m2 != 0.0 {
+            situation.mass_kg += mass_kg;
+            situation.drag_area_m2 += area_m2;
+            self.ask(situation, layout, states, rates, scratch);
+        }
+        for action in &scratch.actions {
             sums.rotating_kg += action.rotating_mass_kg;
             sums.pushed_n += action.force_n;
             sums.resistance_n += action.resistance_n;
             sums.auxiliary_power_w += action.auxiliary_power_w;
             sums.effect_shaft_w += action.shaft_power_w;
-            scratch.actions[index] = action;
+            sums.loss_share += action.loss_share;
+            sums.slip_per_n += action.slip_per_n;
+            sums.engine_friction_n_m += action.engine_friction_n_m;
+            sums.battery_resistance_ohm += action.battery_resistance_ohm;
         }
-        situation.mass_kg = mass_kg;
         for (index, task) in self.tasks.iter().enumerate() {
             let range = layout.tasks[index].clone();
             let load = task.plugin.load(situation, &states[range.clone()], &mut rates[range]);
@@ -239,16 +329,36 @@ impl Model {
         }
         sums
     }
+
+    /// Asks every effect what it does.
+    fn ask(
+        &self,
+        situation: &Situation,
+        layout: &Layout,
+        states: &[f64],
+        rates: &mut [f64],
+        scratch: &mut Scratch,
+    ) {
+        let effects = self.effects.iter().zip(&layout.effects);
+        for ((effect, range), action) in effects.zip(&mut scratch.actions) {
+            *action = effect.plugin.act(situation, &states[range.clone()], &mut rates[range.clone()]);
+        }
+    }
 }
 
 /// What effects and tasks add up to.
 #[derive(Clone, Copy, Debug, Default)]
+#[allow(clippy::struct_field_names, reason = "each name ends in its unit")]
 struct Sums {
     rotating_kg: f64,
     pushed_n: f64,
     resistance_n: f64,
     auxiliary_power_w: f64,
     effect_shaft_w: f64,
+    loss_share: f64,
+    slip_per_n: f64,
+    engine_friction_n_m: f64,
+    battery_resistance_ohm: f64,
     drawbar_n: f64,
     pto_power_w: f64,
     hydraulic_power_w: f64,
@@ -269,8 +379,6 @@ fn book(instant: &Instant, way: f64, given: &Given, slots: &Slots, actions: &[Ac
     let losses = slots.first_effect - FIRST_LOSS;
     powers[FIRST_LOSS..slots.first_effect].copy_from_slice(&instant.delivery.losses_w[..losses]);
     for (power, action) in powers[slots.first_effect..].iter_mut().zip(actions) {
-        *power = (way * action.resistance_n - action.force_n) * speed_m_s
-            + action.auxiliary_power_w
-            + action.shaft_power_w;
+        *power = (way * instant.resistance_n(action) - action.force_n) * speed_m_s + instant.power_w(action);
     }
 }

@@ -6,6 +6,8 @@
 
 mod balance;
 mod cycle;
+#[cfg(test)]
+mod effect_tests;
 mod ledger;
 mod model;
 #[cfg(test)]

@@ -13,9 +13,10 @@ pub(crate) struct Recorder {
     columns: Vec<Vec<f64>>,
 }
 
-const MOTION: [&str; 17] = [
+const MOTION: [&str; 18] = [
     "position_m",
     "speed_m_s",
+    "wheel_speed_m_s",
     "acceleration_m_s2",
     "elevation_m",
     "grade",
@@ -61,6 +62,7 @@ impl Recorder {
         let motion = [
             machine.position_m(),
             machine.speed_m_s(),
+            instant.wheel_speed_m_s,
             instant.acceleration_m_s2,
             place.elevation_m,
             place.grade(),
@@ -84,9 +86,7 @@ impl Recorder {
             .chain([f64::from(u8::from(instant.situation.coasting))])
             .chain(readings.into_iter().map(|(_, value)| value))
             .chain(machine.states().iter().copied())
-            .chain(
-                machine.effect_actions().iter().flat_map(|action| effect_row(action, machine.speed_m_s())),
-            );
+            .chain(machine.effect_actions().iter().flat_map(|action| effect_row(instant, action)));
         for (column, value) in self.columns.iter_mut().zip(values) {
             column.push(value);
         }
@@ -109,11 +109,7 @@ impl Recorder {
 }
 
 /// Net forward force, power and mass of an effect.
-fn effect_row(action: &Action, speed_m_s: f64) -> [f64; 3] {
-    let way = if speed_m_s < 0.0 { -1.0 } else { 1.0 };
-    [
-        action.force_n - way * action.resistance_n,
-        action.auxiliary_power_w + action.shaft_power_w,
-        action.mass_kg,
-    ]
+fn effect_row(instant: &Instant, action: &Action) -> [f64; 3] {
+    let way = if instant.situation.speed_m_s < 0.0 { -1.0 } else { 1.0 };
+    [action.force_n - way * instant.resistance_n(action), instant.power_w(action), action.mass_kg]
 }

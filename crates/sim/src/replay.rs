@@ -52,11 +52,12 @@ pub enum Inputs {
     AuxiliaryPower,
     DrawbarForce,
     Coasting,
+    Brake,
 }
 
 impl Inputs {
     /// Every circumstance.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Grade,
         Self::Heading,
         Self::Curvature,
@@ -65,6 +66,7 @@ impl Inputs {
         Self::AuxiliaryPower,
         Self::DrawbarForce,
         Self::Coasting,
+        Self::Brake,
     ];
 
     /// The channels that it is made of.
@@ -78,6 +80,7 @@ impl Inputs {
             Self::AuxiliaryPower => &["auxiliary_power_w"],
             Self::DrawbarForce => &["drawbar_force_n"],
             Self::Coasting => &["coasting"],
+            Self::Brake => &["brake"],
         }
     }
 }
@@ -192,6 +195,7 @@ impl<'a> Tape<'a> {
                 Inputs::AuxiliaryPower => given.auxiliary_power_w = Some(value(0)),
                 Inputs::DrawbarForce => given.drawbar_force_n = Some(value(0)),
                 Inputs::Coasting => coasting = columns[0][index] >= 0.5,
+                Inputs::Brake => given.braking = columns[0][index] >= 0.5,
             }
         }
         (given, coasting)

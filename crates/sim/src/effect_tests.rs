@@ -1,0 +1,203 @@
+//! What effects may do to the balances, one by one and together.
+
+use crate::{
+    Cycle, Drive, Model, Named, Outcome, Phase, Replay, Resistance, Start, Until, Vehicle, replay, simulate,
+};
+use headland_plugin::{
+    Action, Air, Contact, Delivery, Demand, Driveline, Effect, MAX_LOSSES, Place, Readings, Situation, Soil,
+    Terrain,
+};
+
+const MASS_KG: f64 = 1000.0;
+
+/// What a test wants, whatever happens; it may limit the force as well.
+#[derive(Debug)]
+struct Does {
+    action: Action,
+    most_n: f64,
+}
+
+impl Effect for Does {
+    fn act(&self, _: &Situation, _: &[f64], _: &mut [f64]) -> Action {
+        self.action
+    }
+
+    fn limits_n(&self, _: &Situation, _: &[f64]) -> (f64, f64) {
+        (-500.0, self.most_n)
+    }
+}
+
+/// Resists in proportion to the weight that it is told of.
+#[derive(Debug)]
+struct Weighs;
+
+impl Effect for Weighs {
+    fn act(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Action {
+        Action { resistance_n: at.mass_kg + at.drag_area_m2, ..Action::default() }
+    }
+}
+
+#[derive(Debug)]
+struct Level;
+
+impl Terrain for Level {
+    fn at(&self, _: f64) -> Place {
+        Place::default()
+    }
+}
+
+#[derive(Debug)]
+struct Resists(f64);
+
+impl Soil for Resists {
+    fn resistance_n(&self, _: &Contact) -> f64 {
+        self.0
+    }
+}
+
+/// Gives what is asked, without loss.
+#[derive(Debug)]
+struct Ideal;
+
+impl Driveline for Ideal {
+    fn losses(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    fn source(&self) -> &'static str {
+        "store"
+    }
+
+    fn rotating_mass_kg(&self, _: bool) -> f64 {
+        0.0
+    }
+
+    fn deliver(&self, demand: &Demand, _: &[f64], _: &mut [f64]) -> Delivery {
+        let force_n = if demand.coasting { 0.0 } else { demand.force_n };
+        let source_power_w = force_n * demand.speed_m_s + demand.auxiliary_power_w + demand.shaft_power_w;
+        let readings = Readings { motor_torque_n_m: force_n, ..Readings::NONE };
+        Delivery { force_n, source_power_w, losses_w: [0.0; MAX_LOSSES], readings }
+    }
+
+    fn force_of_torque_n(&self, torque_n_m: f64, _: f64) -> Option<f64> {
+        Some(torque_n_m)
+    }
+}
+
+fn model(effects: Vec<Box<dyn Effect>>) -> Model {
+    Model {
+        vehicle: Vehicle {
+            mass_kg: MASS_KG,
+            rotating_mass_kg: 0.0,
+            resistance: Resistance::Drag { area_m2: 0.0 },
+        },
+        gravity_m_s2: 9.81,
+        air: Air { density_kg_m3: 1.2, ..Air::default() },
+        terrain: Box::new(Level),
+        soil: Some(Box::new(Resists(200.0))),
+        driveline: Box::new(Ideal),
+        tasks: Vec::new(),
+        effects: effects
+            .into_iter()
+            .enumerate()
+            .map(|(index, plugin)| Named { name: format!("effect_{index}"), plugin })
+            .collect(),
+    }
+}
+
+fn does(action: Action) -> Box<dyn Effect> {
+    Box::new(Does { action, most_n: f64::INFINITY })
+}
+
+fn drive(model: &Model, start_m_s: f64, phases: Vec<Phase>) -> Outcome {
+    let start = Start { position_m: 0.0, speed_m_s: start_m_s };
+    let cycle = Cycle { start, phases, driver_gain_per_s: 1.0, step_s: 0.01, longest_s: 1000.0 };
+    simulate(model, &cycle).unwrap()
+}
+
+fn hold(model: &Model) -> Outcome {
+    drive(model, 10.0, vec![Phase::Hold { for_s: 2.0 }])
+}
+
+fn last(outcome: &Outcome, channel: &str) -> f64 {
+    *outcome.trace.get(channel).unwrap().last().unwrap()
+}
+
+/// 200 N at the ground with a tenth lost: the wheels make 200 / 0.9 = 222.2 N, and 22.2 N are the effect's.
+#[test]
+fn a_share_that_is_lost_is_asked_for_and_booked() {
+    let outcome = hold(&model(vec![does(Action { loss_share: 0.1, ..Action::default() })]));
+    assert!((last(&outcome, "tractive_force_n") - 200.0 / 0.9).abs() < 1e-9);
+    assert!((last(&outcome, "effect_0_n") + 20.0 / 0.9).abs() < 1e-9);
+    assert!((last(&outcome, "speed_m_s") - 10.0).abs() < 1e-12);
+}
+
+/// A slip of 200 · 0.0005 = 0.1: the wheels roll at 10 / 0.9 m/s, and 200 · 1.111 = 222.2 W are the effect's.
+#[test]
+fn slipping_wheels_turn_faster_and_take_power() {
+    let outcome = hold(&model(vec![does(Action { slip_per_n: 5e-4, ..Action::default() })]));
+    assert!((last(&outcome, "wheel_speed_m_s") - 10.0 / 0.9).abs() < 1e-9);
+    assert!((last(&outcome, "effect_0_w") - 2000.0 / 9.0).abs() < 1e-6);
+    assert!(outcome.ledger.relative_residual() < 1e-9, "{:?}", outcome.ledger);
+}
+
+#[test]
+fn effects_learn_of_mass_and_area_that_others_add_in_whatever_order() {
+    let adds = || does(Action { mass_kg: 50.0, drag_area_m2: 3.0, ..Action::default() });
+    for effects in [vec![adds(), Box::new(Weighs) as Box<dyn Effect>], vec![Box::new(Weighs), adds()]] {
+        let outcome = hold(&model(effects));
+        assert!((last(&outcome, "tractive_force_n") - 1253.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn resistances_that_are_taken_away_never_drive() {
+    let outcome = drive(
+        &model(vec![does(Action { resistance_n: -300.0, ..Action::default() })]),
+        3.0,
+        vec![Phase::Coast { until: Until::Elapsed(5.0) }],
+    );
+    assert!((last(&outcome, "speed_m_s") - 3.0).abs() < 1e-12);
+    assert!(outcome.ledger.relative_residual() < 1e-9, "{:?}", outcome.ledger);
+    let resting = drive(
+        &model(vec![does(Action { resistance_n: -300.0, ..Action::default() })]),
+        0.0,
+        vec![Phase::Coast { until: Until::Elapsed(1.0) }],
+    );
+    assert_eq!(last(&resting, "speed_m_s"), 0.0);
+}
+
+/// Asked for 1200 N and limited to 700 N: (700 − 200) / 1000 = 0.5 m/s².
+#[test]
+fn a_limit_holds_what_the_driver_asks_and_not_what_was_recorded() {
+    let limited = model(vec![Box::new(Does { action: Action::default(), most_n: 700.0 })]);
+    let outcome = drive(&limited, 1.0, vec![Phase::Reach { speed_m_s: 2.0, acceleration_m_s2: 1.0 }]);
+    assert!((outcome.trace.duration_s() - 2.0).abs() < 1e-9);
+    let unlimited = drive(&model(vec![]), 1.0, vec![Phase::Reach { speed_m_s: 2.0, acceleration_m_s2: 1.0 }]);
+    let how =
+        Replay { drive: Drive::Force, also: Vec::new(), window_s: None, smoothing_s: 0.05, step_s: 0.01 };
+    let replayed = replay(&limited, &unlimited.trace, &how).unwrap();
+    assert!((last(&replayed, "speed_m_s") - 2.0).abs() < 1e-3);
+}
+
+/// The drive brakes with 500 N at most, less a tenth; brakes take what is missing from 1000 N.
+#[test]
+fn brakes_take_over_where_an_effect_limits_the_drive() {
+    let action = Action { loss_share: 0.1, ..Action::default() };
+    let limited = model(vec![Box::new(Does { action, most_n: f64::INFINITY })]);
+    let outcome = drive(&limited, 4.0, vec![Phase::Reach { speed_m_s: 2.0, acceleration_m_s2: 1.0 }]);
+    let brakes = outcome.trace.get("brake_force_n").unwrap()[10];
+    assert!((brakes - (1000.0 - 200.0 - 550.0)).abs() < 1e-9, "{brakes}");
+    assert!((outcome.trace.duration_s() - 2.0).abs() < 1e-9);
+    assert!(outcome.ledger.relative_residual() < 1e-9, "{:?}", outcome.ledger);
+}
+
+#[test]
+fn the_constant_part_of_a_road_load_goes_with_the_mass() {
+    let mut loaded = model(vec![does(Action { mass_kg: 500.0, ..Action::default() })]);
+    loaded.soil = None;
+    loaded.vehicle.resistance =
+        Resistance::RoadLoad { f0_n: 100.0, f1_n_s_m: 2.0, f2_n_s2_m2: 0.5, air_density_kg_m3: 1.2 };
+    let outcome = hold(&loaded);
+    assert!((last(&outcome, "tractive_force_n") - (150.0 + 20.0 + 50.0)).abs() < 1e-9);
+}

@@ -1,0 +1,72 @@
+//! Where everything stands in the recording.
+
+use rerun::{EntityPath, EntityPathPart};
+
+fn entity(parts: &[&str]) -> EntityPath {
+    parts.iter().map(|part| EntityPathPart::new(*part)).collect::<Vec<_>>().into()
+}
+
+/// Everything in space.
+pub(crate) fn world() -> EntityPath {
+    entity(&["world"])
+}
+
+/// The ground, or the strip below a run.
+pub(crate) fn ground(part: &str) -> EntityPath {
+    entity(&["world", "ground", part])
+}
+
+/// The line that a run drives.
+pub(crate) fn line(run: &str, who: Who) -> EntityPath {
+    entity(&["world", "runs", run, who.name(), "path"])
+}
+
+/// A run's vehicle.
+pub(crate) fn vehicle(run: &str, who: Who) -> EntityPath {
+    entity(&["world", "runs", run, who.name(), "vehicle"])
+}
+
+/// A part of something.
+pub(crate) fn part(whole: &EntityPath, part: &str) -> EntityPath {
+    whole.join(&entity(&[part]))
+}
+
+/// A line of a plot.
+pub(crate) fn channel(run: &str, channel: &str, who: Who) -> EntityPath {
+    entity(&["channels", run, channel, who.name()])
+}
+
+/// The text.
+pub(crate) fn summary() -> EntityPath {
+    entity(&["summary"])
+}
+
+/// Where a line or a vehicle comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Who {
+    Modelled,
+    Measured,
+    Residual,
+}
+
+impl Who {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Modelled => "modelled",
+            Self::Measured => "measured",
+            Self::Residual => "residual",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_of_any_name_has_one_place() {
+        let path = vehicle("a/b: 3 °", Who::Modelled);
+        assert_eq!(path.len(), 5);
+        assert_eq!(EntityPath::from(path.to_string()), path);
+    }
+}

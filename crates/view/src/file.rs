@@ -1,0 +1,67 @@
+//! A scene as an `.rrd` file.
+
+use crate::entity::{self, Who};
+use crate::lanes::{Lane, lanes};
+use crate::recorder::{Recorder, encode};
+use crate::{Scene, ViewError, blueprint, forces, groups, plots, summary, surroundings, vehicle};
+use rerun::external::re_build_info::CrateVersion;
+use rerun::external::re_log_encoding::Encoder;
+use rerun::external::re_log_encoding::rrd::EncodingOptions;
+use rerun::log::LogMsg;
+use rerun::{ApplicationId, RecordingStreamBuilder, TextDocument};
+use std::fs::{self, File};
+use std::io::{BufWriter, Write as _};
+use std::path::Path;
+
+/// Writes the scene to a file, which appears whole or not at all.
+///
+/// # Errors
+/// [`ViewError`]: a scene that cannot be drawn, [`ViewError::File`] where the file system refuses.
+pub fn write(scene: &Scene, path: &Path) -> Result<(), ViewError> {
+    let messages = messages(scene)?;
+    let mut bytes = Vec::new();
+    let stored = messages.into_iter().map(Ok::<LogMsg, _>);
+    Encoder::encode_into(CrateVersion::LOCAL, EncodingOptions::PROTOBUF_COMPRESSED, stored, &mut bytes)
+        .map_err(encode)?;
+    let file_error = |source| ViewError::File { path: path.to_owned(), source };
+    let part = path.with_extension("rrd.part");
+    let mut file = BufWriter::new(File::create(&part).map_err(file_error)?);
+    file.write_all(&bytes).and_then(|()| file.flush()).map_err(file_error)?;
+    fs::rename(&part, path).map_err(file_error)
+}
+
+/// Everything that the file holds: the layout first, so that the viewer has it before the data.
+pub(crate) fn messages(scene: &Scene) -> Result<Vec<LogMsg>, ViewError> {
+    scene.check()?;
+    let (lanes, shift) = lanes(scene)?;
+    let groups = groups::groups(scene);
+    let title = if scene.title.trim().is_empty() { "Headland" } else { scene.title };
+    // A name of other characters would get a number behind it.
+    let plain = |letter: &char| letter.is_ascii_alphanumeric() || matches!(letter, ' ' | '-' | '_');
+    let name: String = title.chars().filter(plain).collect();
+    let name = if name.trim().is_empty() { "Headland" } else { name.trim() };
+    let application = ApplicationId::try_new(name).map_err(encode)?;
+    let to = Recorder::new(RecordingStreamBuilder::new(application.clone()).recording_name(title))?;
+    let stripe_m = surroundings::draw(&to, scene, &lanes, shift)?;
+    let newton_per_m = forces::newton_per_m(scene);
+    for lane in &lanes {
+        let Lane { run, path, measured, .. } = lane;
+        let name = |who: Who| match (scene.runs.len(), measured.is_some()) {
+            (1, false) => String::new(),
+            (1, true) => who.name().to_owned(),
+            (_, false) => run.id.clone(),
+            (_, true) => format!("{} {}", run.id, who.name()),
+        };
+        vehicle::drive(&to, &run.id, Who::Modelled, path, &scene.vehicle, &name(Who::Modelled))?;
+        if let Some(measured) = measured {
+            vehicle::drive(&to, &run.id, Who::Measured, measured, &scene.vehicle, &name(Who::Measured))?;
+        }
+        forces::draw(&to, scene, run, newton_per_m)?;
+        plots::draw(&to, scene, &groups, lane)?;
+    }
+    let text = TextDocument::from_markdown(summary::summary(scene, newton_per_m, stripe_m));
+    to.fixed(&entity::summary(), &text)?;
+    let mut messages = blueprint::messages(&application, scene, &groups, &lanes)?;
+    messages.extend(to.finish());
+    Ok(messages)
+}

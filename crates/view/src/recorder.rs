@@ -1,0 +1,57 @@
+//! Messages as Rerun stores them, collected in memory.
+
+use crate::ViewError;
+use rerun::log::LogMsg;
+use rerun::sink::MemorySinkStorage;
+use rerun::{
+    AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, SerializationResult,
+    SerializedComponentColumn, TimeColumn,
+};
+
+/// The one timeline [s].
+pub(crate) const TIMELINE: &str = "time";
+
+/// A recording, or the blueprint that belongs to it.
+pub(crate) struct Recorder {
+    stream: RecordingStream,
+    storage: MemorySinkStorage,
+}
+
+pub(crate) fn encode(error: impl std::fmt::Display) -> ViewError {
+    ViewError::Encode { reason: error.to_string() }
+}
+
+impl Recorder {
+    pub(crate) fn new(builder: RecordingStreamBuilder) -> Result<Self, ViewError> {
+        let (stream, storage) = builder.enabled(true).memory().map_err(encode)?;
+        Ok(Self { stream, storage })
+    }
+
+    /// The stream that everything goes through.
+    pub(crate) fn stream(&self) -> &RecordingStream {
+        &self.stream
+    }
+
+    /// What holds at any time.
+    pub(crate) fn fixed(&self, at: &EntityPath, what: &dyn AsComponents) -> Result<(), ViewError> {
+        self.stream.log_static(at.clone(), what).map_err(encode)
+    }
+
+    /// What changes: one row for each time.
+    pub(crate) fn rows<C>(
+        &self,
+        at: &EntityPath,
+        times_s: impl IntoIterator<Item = f64>,
+        columns: SerializationResult<C>,
+    ) -> Result<(), ViewError>
+    where
+        C: Iterator<Item = SerializedComponentColumn>,
+    {
+        let times = TimeColumn::new_duration_secs(TIMELINE, times_s);
+        self.stream.send_columns(at.clone(), [times], columns.map_err(encode)?).map_err(encode)
+    }
+
+    pub(crate) fn finish(self) -> Vec<LogMsg> {
+        self.storage.take()
+    }
+}

@@ -214,7 +214,9 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    fn trace(step_s: f64, count: u32, channels: &[(&str, fn(f64) -> f64, Origin)]) -> Trace {
+    type Signal = fn(f64) -> f64;
+
+    fn trace(step_s: f64, count: u32, channels: &[(&str, Signal, Origin)]) -> Trace {
         let time_s: Vec<f64> = (0..count).map(|step| step_s * f64::from(step)).collect();
         let mut trace = Trace::new(time_s.clone()).unwrap();
         for (name, value, origin) in channels {

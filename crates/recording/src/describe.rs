@@ -23,6 +23,8 @@ pub(crate) struct Description {
     pub split: Option<Split>,
     #[serde(default)]
     pub known: Vec<KnownDescription>,
+    #[serde(default)]
+    pub notes: Vec<String>,
 }
 
 fn yes() -> bool {
@@ -45,7 +47,11 @@ pub(crate) struct RunDescription {
     #[serde(default, rename = "use")]
     pub purpose: Purpose,
     #[serde(default)]
+    pub channels: Vec<ChannelDescription>,
+    #[serde(default)]
     pub known: Vec<KnownDescription>,
+    #[serde(default)]
+    pub notes: Vec<String>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]

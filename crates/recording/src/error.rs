@@ -68,10 +68,14 @@ pub enum RecordingError {
         reason: String,
     },
     /// The folder of recordings that the description speaks of is not there.
-    #[error("recordings folder not found; set HEADLAND_RECORDINGS\n  {at}")]
+    #[error("no folder `{}`, expected the recordings; set {variable} to where they lie\n  {at}", folder.display())]
     NoRecordings {
         /// Where the description asks for it.
         at: Place,
+        /// The folder that was looked for.
+        folder: PathBuf,
+        /// The variable that can name another.
+        variable: String,
     },
     /// An environment variable that the description names is not set.
     #[error("the environment variable `{name}` is not set\n  {at}")]
@@ -156,6 +160,16 @@ pub enum RecordingError {
         at: Place,
         /// The columns that are there.
         present: String,
+    },
+    /// Date cells whose day and month could be either way round.
+    #[error("`{found}` in column `{column}` could be day/month or month/day; write `time: (order: dmy)` or `mdy`\n  {at}")]
+    DateOrder {
+        /// The first such cell.
+        at: Place,
+        /// The column.
+        column: String,
+        /// What it holds.
+        found: String,
     },
     /// The format is known and cannot be read yet.
     #[error("{format} is not supported yet; csv and parquet are\n  {at}")]
@@ -246,7 +260,7 @@ impl RecordingError {
             Self::File { at, .. }
             | Self::Folder { at, .. }
             | Self::Description { at, .. }
-            | Self::NoRecordings { at }
+            | Self::NoRecordings { at, .. }
             | Self::Variable { at, .. }
             | Self::Twice { at, .. }
             | Self::Value { at, .. }
@@ -255,6 +269,7 @@ impl RecordingError {
             | Self::Misspelt { at, .. }
             | Self::NoColumn { at, .. }
             | Self::NoTime { at, .. }
+            | Self::DateOrder { at, .. }
             | Self::Unsupported { at, .. }
             | Self::Empty { at, .. }
             | Self::NoHeader { at, .. }

@@ -6,29 +6,32 @@
 //! gaps, repeated samples, missing values, stuck or offset sensors. These are told and never repaired.
 //!
 //! Logs are streamed through decompression, decoding and parsing row by row: memory holds the kept columns (8 bytes a
-//! cell) and never the text, so that a 2 GB file takes what its numbers take.
+//! cell) and never the text, so that a 2 GB file takes what its numbers take; `keep_others: false` keeps the described
+//! columns alone.
 
-#![allow(dead_code)]
-
-// mod cells;
+mod cells;
 mod clock;
-// mod column_unit;
-// mod cut;
+mod column_unit;
+mod correct;
+mod cut;
 mod describe;
 mod error;
 mod folder;
-// mod inspect;
-// mod layout;
-// mod load;
+mod layout;
+mod load;
+mod look;
 mod notice;
+mod parquet_log;
 mod places;
-// mod plan;
+mod plan;
 mod recording;
-// mod rows;
-// mod source;
-// mod text;
+mod rows;
+mod source;
+mod text;
+mod time_plan;
+mod validate;
 
 pub use error::{Place, RecordingError};
-// pub use load::{check, load};
+pub use load::{check, load};
 pub use notice::{Notice, NoticeKind};
 pub use recording::{Check, CheckedRun, Known, RecordedRun, Recording, Sensor};

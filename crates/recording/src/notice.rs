@@ -31,6 +31,10 @@ pub enum NoticeKind {
     Assumed,
     /// Where a log was cut into pieces, and pieces that were left out.
     Split,
+    /// A channel whose values are few and far apart.
+    Coarse,
+    /// What the description itself tells its reader.
+    Note,
 }
 
 impl NoticeKind {
@@ -50,6 +54,8 @@ impl NoticeKind {
             Self::Text => "text",
             Self::Assumed => "assumed",
             Self::Split => "split",
+            Self::Coarse => "coarse",
+            Self::Note => "note",
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::tree::{Node, Shape, parse};
 use headland_units::{Unit, parse_quantity, unit_of_name};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// A file that was read.
 #[derive(Debug, PartialEq)]
@@ -23,7 +23,7 @@ pub struct Source {
 #[derive(Clone, Debug)]
 struct Segment {
     start: usize,
-    source: Rc<Source>,
+    source: Arc<Source>,
     origin: usize,
     /// Whether the stretch stands for the text at its origin rather than being a copy of it.
     replaced: bool,
@@ -36,7 +36,7 @@ pub struct Document {
     segments: Vec<Segment>,
     tree: Node,
     folder: PathBuf,
-    main: Rc<Source>,
+    main: Arc<Source>,
 }
 
 /// How deep includes may nest.
@@ -59,7 +59,7 @@ impl Document {
     /// # Errors
     /// As [`Document::read`].
     pub fn of_text(name: &str, text: &str, folder: &Path) -> Result<Self, ScenarioError> {
-        let source = Rc::new(Source { path: PathBuf::from(name), text: text.to_owned() });
+        let source = Arc::new(Source { path: PathBuf::from(name), text: text.to_owned() });
         let mut builder = Builder { text: String::new(), segments: Vec::new() };
         builder.source(&source, folder, &mut Vec::new())?;
         builder.document(folder.to_owned(), source)
@@ -146,7 +146,7 @@ impl Document {
             at = span.end;
         }
         self.copy(&mut builder, at..self.text.len());
-        builder.document(self.folder.clone(), Rc::clone(&self.main))
+        builder.document(self.folder.clone(), Arc::clone(&self.main))
     }
 
     /// The one dotted path at which a parameter lies: the path itself, or the only field of that name.
@@ -188,7 +188,7 @@ impl Document {
         let origin = self.main.text.len();
         builder.push(&piece, &self.main, origin, true);
         self.copy(&mut builder, at..self.text.len());
-        builder.document(self.folder.clone(), Rc::clone(&self.main))
+        builder.document(self.folder.clone(), Arc::clone(&self.main))
     }
 
     fn copy(&self, builder: &mut Builder, range: Range<usize>) {
@@ -239,15 +239,15 @@ struct Builder {
 }
 
 impl Builder {
-    fn push(&mut self, text: &str, source: &Rc<Source>, origin: usize, replaced: bool) {
+    fn push(&mut self, text: &str, source: &Arc<Source>, origin: usize, replaced: bool) {
         if text.is_empty() {
             return;
         }
-        self.segments.push(Segment { start: self.text.len(), source: Rc::clone(source), origin, replaced });
+        self.segments.push(Segment { start: self.text.len(), source: Arc::clone(source), origin, replaced });
         self.text.push_str(text);
     }
 
-    fn document(self, folder: PathBuf, main: Rc<Source>) -> Result<Document, ScenarioError> {
+    fn document(self, folder: PathBuf, main: Arc<Source>) -> Result<Document, ScenarioError> {
         let Self { text, segments } = self;
         match parse(&text) {
             Ok(tree) => Ok(Document { text, segments, tree, folder, main }),
@@ -264,7 +264,7 @@ impl Builder {
         path: &Path,
         from: Option<&Location>,
         open: &mut Vec<PathBuf>,
-    ) -> Result<Rc<Source>, ScenarioError> {
+    ) -> Result<Arc<Source>, ScenarioError> {
         let unreadable =
             |reason: String| ScenarioError::File { path: path.to_owned(), reason, at: from.cloned() };
         let bytes = if path.is_dir() {
@@ -283,7 +283,7 @@ impl Builder {
         if open.contains(&identity) || open.len() >= DEEPEST_INCLUDE {
             return Err(unreadable("includes itself".to_owned()));
         }
-        let source = Rc::new(Source { path: path.to_owned(), text });
+        let source = Arc::new(Source { path: path.to_owned(), text });
         open.push(identity);
         let folder = path.parent().unwrap_or(Path::new(""));
         self.source(&source, folder, open)?;
@@ -293,7 +293,7 @@ impl Builder {
 
     fn source(
         &mut self,
-        source: &Rc<Source>,
+        source: &Arc<Source>,
         folder: &Path,
         open: &mut Vec<PathBuf>,
     ) -> Result<(), ScenarioError> {
@@ -330,7 +330,7 @@ enum Replacement {
 fn collect(
     node: &Node,
     unit: Option<&Unit>,
-    source: &Rc<Source>,
+    source: &Arc<Source>,
     found: &mut Vec<(Range<usize>, Replacement)>,
 ) -> Result<(), ScenarioError> {
     match &node.shape {

@@ -14,6 +14,8 @@ use serde::Deserialize;
 #[serde(deny_unknown_fields)]
 pub struct ConstantGrade {
     grade: f64,
+    /// Where nothing blows, only the map shows it: northward unless it is said.
+    #[serde(default)]
     heading_rad: f64,
 }
 
@@ -29,7 +31,8 @@ impl Plugin for ConstantGrade {
                 .must_be(Bound::Within(-1.0, 1.0))
                 .usually(-0.3, 0.3),
             parameter("heading_rad", "rad", "direction of travel, clockwise from north")
-                .usually(-std::f64::consts::TAU, std::f64::consts::TAU),
+                .usually(-std::f64::consts::TAU, std::f64::consts::TAU)
+                .or(0.0),
         ],
     };
 }
@@ -78,7 +81,8 @@ mod tests {
     }
 
     #[test]
-    fn a_grade_without_heading_is_refused() {
-        assert!(ron::from_str::<ConstantGrade>("(grade: 0.1)").is_err());
+    fn a_heading_alone_is_refused_and_a_grade_alone_leads_north() {
+        assert!(ron::from_str::<ConstantGrade>("(heading_rad: 0.1)").is_err());
+        assert_eq!(ron::from_str::<ConstantGrade>("(grade: 0.1)").unwrap().at(1.0).east_m, 0.0);
     }
 }

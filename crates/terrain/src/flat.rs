@@ -12,6 +12,8 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Flat {
+    /// Where nothing blows, only the map shows it: northward unless it is said.
+    #[serde(default)]
     heading_rad: f64,
 }
 
@@ -23,7 +25,8 @@ impl Plugin for Flat {
         source: "definition",
         validity: "everywhere; leaves out slope, roughness and turns",
         parameters: &[parameter("heading_rad", "rad", "direction of travel, clockwise from north")
-            .usually(-std::f64::consts::TAU, std::f64::consts::TAU)],
+            .usually(-std::f64::consts::TAU, std::f64::consts::TAU)
+                .or(0.0)],
     };
 }
 

@@ -1,0 +1,178 @@
+//! `headland run`: simulates a scenario.
+
+use crate::arguments::RunOptions;
+use crate::failure::{Failure, interrupted};
+use crate::output::Output;
+use crate::say::Say;
+use headland_plugin::Registry;
+use headland_scenario::{Remark, RunSpec, Scenario};
+use headland_sim::{End, Ledger, Outcome, simulate};
+use headland_trace::Run;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::fmt::Write;
+use std::time::Instant;
+
+/// `summary.json`.
+#[derive(Debug, Serialize)]
+pub struct Summary {
+    schema: &'static str,
+    about: String,
+    runs: Vec<RunSummary>,
+    remarks: Vec<String>,
+}
+
+/// One run of the summary.
+#[derive(Debug, Serialize)]
+pub struct RunSummary {
+    id: String,
+    end: End,
+    duration_s: f64,
+    distance_m: f64,
+    initial_speed_m_s: f64,
+    highest_speed_m_s: f64,
+    steps: usize,
+    energy: Ledger,
+    relative_energy_residual: f64,
+}
+
+/// A simulated scenario.
+pub struct Simulated {
+    /// Its traces.
+    pub runs: Vec<Run>,
+    /// What is told of them.
+    pub summary: Summary,
+}
+
+/// Runs the command.
+pub fn run(registry: &Registry, options: &RunOptions, say: &Say) -> Result<(), Failure> {
+    let scenario = Scenario::read(&options.scenario, registry)?;
+    let mut output = Output::new(options.out.as_deref(), &options.scenario)?;
+    let begin = Instant::now();
+    let simulated = simulate_all(&scenario, registry)?;
+    let took_ms = 1e3 * begin.elapsed().as_secs_f64();
+    output.traces("trace.parquet", &simulated.runs)?;
+    output.json("summary.json", &simulated.summary)?;
+    say.result(&told(&scenario, &simulated.summary, took_ms, &output), &simulated.summary)?;
+    match simulated.summary.runs.iter().find_map(|run| stopped(run)) {
+        Some(reason) => Err(Failure::Requirement(reason)),
+        None => Ok(()),
+    }
+}
+
+/// Simulates every run of a scenario.
+pub fn simulate_all(scenario: &Scenario, registry: &Registry) -> Result<Simulated, Failure> {
+    if scenario.cycle.is_none() {
+        return Err(Failure::Input(format!(
+            "{} has no `cycle`, so there is nothing to simulate; `headland compare` replays a recording through it",
+            scenario.document().path().display()
+        )));
+    }
+    let plain = [RunSpec { id: "run".to_owned(), with: Vec::new() }];
+    let specs = if scenario.runs.is_empty() { &plain[..] } else { &scenario.runs };
+    let finished: Vec<(Run, RunSummary)> =
+        specs.par_iter().map(|spec| simulate_one(scenario, spec, registry)).collect::<Result<_, _>>()?;
+    let (runs, summaries) = finished.into_iter().unzip();
+    let summary = Summary {
+        schema: "headland.run/1",
+        about: scenario.about.clone(),
+        runs: summaries,
+        remarks: scenario.remarks.iter().map(told_remark).collect(),
+    };
+    Ok(Simulated { runs, summary })
+}
+
+fn simulate_one(scenario: &Scenario, spec: &RunSpec, registry: &Registry) -> Result<(Run, RunSummary), Failure> {
+    if interrupted() {
+        return Err(Failure::Interrupted);
+    }
+    let scenario = scenario.run(spec, registry)?;
+    let Some(cycle) = &scenario.cycle else {
+        return Err(Failure::Input(format!("run {} has no cycle", spec.id)));
+    };
+    let outcome = simulate(&scenario.model(registry)?, cycle).map_err(|error| Failure::Machine(error.to_string()))?;
+    let summary = summary_of(&spec.id, &outcome);
+    Ok((Run { id: spec.id.clone(), trace: outcome.trace }, summary))
+}
+
+fn summary_of(id: &str, outcome: &Outcome) -> RunSummary {
+    let series = |name: &str| outcome.trace.get(name).unwrap_or(&[]);
+    let ends = |name: &str| match series(name) {
+        [first, .., last] => last - first,
+        _ => 0.0,
+    };
+    RunSummary {
+        id: id.to_owned(),
+        end: outcome.end.clone(),
+        duration_s: outcome.trace.duration_s(),
+        distance_m: ends("position_m"),
+        initial_speed_m_s: series("speed_m_s").first().copied().unwrap_or(0.0),
+        highest_speed_m_s: series("speed_m_s").iter().copied().fold(0.0, f64::max),
+        steps: outcome.steps,
+        relative_energy_residual: outcome.ledger.relative_residual(),
+        energy: outcome.ledger.clone(),
+    }
+}
+
+fn stopped(run: &RunSummary) -> Option<String> {
+    match &run.end {
+        End::Finished => None,
+        End::Stopped { time_s, position_m, reason } => Some(format!(
+            "run `{}` could not be driven to its end: {reason} (at {time_s:.2} s and {position_m:.1} m); what was \
+             simulated up to there is kept",
+            run.id
+        )),
+    }
+}
+
+/// A remark in one line.
+pub fn told_remark(remark: &Remark) -> String {
+    format!("{} ({})", remark.text, remark.at)
+}
+
+fn told(scenario: &Scenario, summary: &Summary, took_ms: f64, output: &Output) -> String {
+    let steps: usize = summary.runs.iter().map(|run| run.steps).sum();
+    let step_ms = 1e3 * scenario.cycle.as_ref().map_or(0.0, |cycle| cycle.step_s);
+    let mut text = format!("{}\n  longitudinal, {step_ms} ms, {steps} steps in {took_ms:.1} ms\n", scenario.about);
+    for run in &summary.runs {
+        let name = if summary.runs.len() > 1 { format!("{:<10} ", run.id) } else { String::new() };
+        let _ = writeln!(
+            text,
+            "  {name}{} after {:.2} s and {:.1} m, at most {:.1} km/h",
+            if run.end == End::Finished { "finished" } else { "stopped" },
+            run.duration_s,
+            run.distance_m,
+            3.6 * run.highest_speed_m_s
+        );
+        let _ = writeln!(text, "  {}energy   {}", if name.is_empty() { "" } else { "           " }, told_energy(&run.energy));
+    }
+    for remark in &summary.remarks {
+        let _ = writeln!(text, "  note     {remark}");
+    }
+    let _ = writeln!(text, "  written  {}", output.told());
+    text
+}
+
+/// `fuel 3.2 MJ = kinetic −0.45 + soil 0.40 + … kJ`
+fn told_energy(ledger: &Ledger) -> String {
+    let (scale, unit) = if ledger.turnover_j() >= 1e7 { (1e6, "MJ") } else { (1e3, "kJ") };
+    let mut given = Vec::new();
+    let mut taken = Vec::new();
+    let mut put = |name: &str, energy_j: f64| {
+        let list = if energy_j < 0.0 { &mut given } else { &mut taken };
+        if energy_j.abs() >= 5e-4 * ledger.turnover_j() {
+            list.push(format!("{} {:.1}", name.replace('_', " "), energy_j.abs() / scale));
+        }
+    };
+    put(&ledger.source_name, -ledger.source_j);
+    put("kinetic", ledger.kinetic_j);
+    for sink in &ledger.sinks {
+        put(&sink.name, sink.energy_j);
+    }
+    format!(
+        "{} = {} {unit}, residual {:.0e} of what moved",
+        if given.is_empty() { "0".to_owned() } else { given.join(" + ") },
+        if taken.is_empty() { "0".to_owned() } else { taken.join(" + ") },
+        ledger.relative_residual()
+    )
+}

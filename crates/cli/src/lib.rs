@@ -1,0 +1,61 @@
+//! The program `headland` as a library: a program with models of its own hands over its registry and has the same
+//! commands.
+//!
+//! ```no_run
+//! fn main() -> std::process::ExitCode {
+//!     let registry = headland_stock::registry();
+//!     headland::run(&registry, std::env::args_os())
+//! }
+//! ```
+
+mod arguments;
+mod command;
+mod failure;
+mod output;
+mod say;
+
+use arguments::{Arguments, Command};
+use clap::Parser;
+use failure::Failure;
+use headland_plugin::Registry;
+use say::Say;
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// Runs the program with the models of a registry.
+pub fn run(registry: &Registry, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version are no mistakes; they go to standard output with status 0.
+            let status = if error.use_stderr() { failure::INPUT } else { 0 };
+            return match error.print() {
+                Ok(()) => ExitCode::from(status),
+                Err(_) => ExitCode::from(failure::MACHINE),
+            };
+        }
+    };
+    let say = Say::new(arguments.common.quiet, arguments.common.json);
+    match begin(registry, &arguments, &say) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            say.failure(&failure);
+            ExitCode::from(failure.status())
+        }
+    }
+}
+
+fn begin(registry: &Registry, arguments: &Arguments, say: &Say) -> Result<(), Failure> {
+    failure::listen_for_interruption()?;
+    if let Some(threads) = arguments.common.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.get())
+            .build_global()
+            .map_err(|error| Failure::Machine(format!("cannot start {threads} threads: {error}")))?;
+    }
+    match &arguments.command {
+        Command::Run(options) => command::run::run(registry, options, say),
+        Command::Check(options) => command::check::check(registry, options, say),
+        Command::Plugins(options) => command::plugins::plugins(registry, options, say),
+    }
+}

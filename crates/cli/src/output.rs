@@ -1,0 +1,62 @@
+//! The folder that a command writes into.
+
+use crate::failure::Failure;
+use headland_trace::{Run, TraceError, write_parquet};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// A folder for results, and what was written there.
+#[derive(Debug)]
+pub struct Output {
+    folder: PathBuf,
+    written: Vec<String>,
+}
+
+impl Output {
+    /// Makes the folder, `out/<stem of the input>` where none is named.
+    pub fn new(named: Option<&Path>, input: &Path) -> Result<Self, Failure> {
+        let folder = named.map_or_else(
+            || Path::new("out").join(input.file_stem().unwrap_or(std::ffi::OsStr::new("result"))),
+            Path::to_owned,
+        );
+        std::fs::create_dir_all(&folder).map_err(|error| Failure::unwritable(&folder, &error))?;
+        Ok(Self { folder, written: Vec::new() })
+    }
+
+    /// Where a file of this name goes, noted as written.
+    pub fn file(&mut self, name: &str) -> PathBuf {
+        self.written.push(name.to_owned());
+        self.folder.join(name)
+    }
+
+    /// Writes a text; a file appears whole or not at all.
+    pub fn text(&mut self, name: &str, text: &str) -> Result<(), Failure> {
+        let path = self.file(name);
+        let draft = self.folder.join(format!(".{name}.part"));
+        std::fs::write(&draft, text)
+            .and_then(|()| std::fs::rename(&draft, &path))
+            .map_err(|error| Failure::unwritable(&path, &error))
+    }
+
+    /// Writes a JSON document.
+    pub fn json(&mut self, name: &str, document: &impl Serialize) -> Result<(), Failure> {
+        let mut json = serde_json::to_string_pretty(document)
+            .map_err(|error| Failure::Machine(format!("cannot write JSON: {error}")))?;
+        json.push('\n');
+        self.text(name, &json)
+    }
+
+    /// Writes traces.
+    pub fn traces(&mut self, name: &str, runs: &[Run]) -> Result<(), Failure> {
+        let path = self.file(name);
+        write_parquet(&path, runs).map_err(|error| match error {
+            TraceError::File { path, source } => Failure::unwritable(&path, &source),
+            other => Failure::Machine(other.to_string()),
+        })
+    }
+
+    /// The line that tells what was written.
+    pub fn told(&self) -> String {
+        format!("{}: {}", self.folder.display(), self.written.join("  "))
+    }
+}

@@ -6,7 +6,7 @@ use headland_trace::{Channel, Trace};
 /// Pairs of one channel that have both values, at times of the recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aligned {
-    /// Time of each pair [s].
+    /// Time of each pair (s).
     pub time_s: Vec<f64>,
     /// What was measured, in the unit of the channel; a direction without its jumps.
     pub measured: Vec<f64>,
@@ -96,7 +96,7 @@ pub(crate) fn interpolated(base: &[f64], values: &[f64], at: f64) -> Option<f64>
     Some(values[left] + share * (values[right] - values[left]))
 }
 
-/// Both signals on `count` evenly spaced times from the first pair to the last, linear between pairs, and the step [s].
+/// Both signals on `count` evenly spaced times from the first pair to the last, linear between pairs, and the step (s).
 ///
 /// For the metrics that need even sampling. A gap between pairs is bridged by a straight line in both signals alike.
 /// `None` of fewer than two pairs or fewer than two times.

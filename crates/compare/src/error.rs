@@ -37,9 +37,9 @@ pub enum CompareError {
     NoOverlap {
         /// The run.
         run: String,
-        /// First and last measured time [s]; NaN of no samples.
+        /// First and last measured time (s); NaN of no samples.
         measured_s: (f64, f64),
-        /// First and last modelled time [s]; NaN of no samples.
+        /// First and last modelled time (s); NaN of no samples.
         modelled_s: (f64, f64),
     },
     /// A text is no requirement.

@@ -219,6 +219,35 @@ mod tests {
         assert_eq!(rating.magnitude, 0.0);
     }
 
+    /// A slowing vehicle with a wobble, and a growing swing; the model of the first is late, that of the second early.
+    /// Expected: what `objective_rating_metrics` 1.3 (Python) gave for the same 400 samples: corridor, phase, magnitude,
+    /// slope, overall.
+    #[test]
+    fn ratings_agree_with_an_independent_implementation() {
+        let sampled = |signal: fn(f64) -> f64| (0..400).map(|k| signal(f64::from(k))).collect::<Vec<f64>>();
+        let agrees = |t: &[f64], c: &[f64], expected: [f64; 5]| {
+            let rating = iso18571(t, c).unwrap();
+            let found = [rating.corridor, rating.phase, rating.magnitude, rating.slope, rating.overall];
+            assert!(
+                found.iter().zip(expected).all(|(found, e)| (found - e).abs() < 1e-9),
+                "{found:?} {expected:?}"
+            );
+            rating
+        };
+        let late = agrees(
+            &sampled(|k| 8.0 * (-k / 300.0).exp() + 0.5 * (k / 17.0).sin()),
+            &sampled(|k| 8.4 * (-k / 260.0).exp() + 0.6 * ((k - 7.0) / 17.0).sin()),
+            [0.993_153_861_569, 0.9125, 0.954_552_455_306, 0.910_234_887_7, 0.952_719_013_229],
+        );
+        assert_eq!((late.shift, late.grade), (7.0 / 400.0, Grade::Excellent));
+        let early = agrees(
+            &sampled(|k| (k / 25.0).sin() * (1.0 + k / 200.0)),
+            &sampled(|k| 1.15 * ((k + 12.0) / 25.5).sin() * (1.0 + k / 230.0) - 0.1),
+            [0.638_505_487_462, 0.9125, 0.958_865_638_241, 0.959_153_057_866, 0.821_505_934_206],
+        );
+        assert_eq!((early.shift, early.grade), (-7.0 / 400.0, Grade::Good));
+    }
+
     /// The nine-sample mean of a straight line's slope is its slope, ends included.
     #[test]
     fn slopes_of_a_line_are_its_slope() {

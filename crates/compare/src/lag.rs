@@ -2,17 +2,17 @@
 
 use crate::{align::Aligned, align::evenly, statistics::correlation};
 
-/// Largest delay that is looked for [s].
+/// Largest delay that is looked for (s).
 pub const LARGEST_S: f64 = 10.0;
 /// Largest delay that is looked for, as a share of the length.
 const LARGEST_SHARE: f64 = 0.2;
 /// Most samples that are shifted against each other; a longer recording is thinned evenly.
-const MOST: usize = 20_000;
+const MOST: usize = 10_000;
 
 /// A delay, and what it would gain.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Lag {
-    /// Positive where the model is late [s].
+    /// Positive where the model is late (s).
     pub lag_s: f64,
     /// Correlation once the delay is taken out.
     pub correlation: f64,

@@ -35,7 +35,7 @@ pub enum Metric {
     CdfDistance,
     /// Area between the cumulative probabilities [unit of the channel].
     CdfArea,
-    /// Absolute value of the delay [s].
+    /// Absolute value of the delay (s).
     Lag,
     /// Absolute value of the relative error of the integral over time.
     Total,

@@ -71,7 +71,7 @@ pub struct RunComparison {
     pub run: String,
     /// Samples of the recording.
     pub samples: usize,
-    /// Time from the first sample of the recording to the last [s].
+    /// Time from the first sample of the recording to the last (s).
     pub duration_s: f64,
     /// What both have.
     pub channels: Vec<ChannelComparison>,

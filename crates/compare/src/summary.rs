@@ -41,7 +41,7 @@ pub struct ChannelSummary {
 /// The document `comparison.json`.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Summary {
-    /// [`SCHEMA`].
+    /// Name and version of the document: `headland.comparison/1`.
     pub schema: &'static str,
     /// The channels that the model predicted in at least one run: all that can validate it.
     pub channels: Vec<ChannelSummary>,

@@ -34,9 +34,9 @@ pub struct Total {
     pub within_criterion: Option<bool>,
     /// Whether the model was given the rate, or a factor of it, as an input: then this validates nothing.
     pub driven: bool,
-    /// Time that was integrated over [s].
+    /// Time that was integrated over (s).
     pub covered_s: f64,
-    /// Longest interval between two pairs [s]: how much the trapezoidal rule had to bridge.
+    /// Longest interval between two pairs (s): how much the trapezoidal rule had to bridge.
     pub longest_step_s: f64,
 }
 
@@ -94,7 +94,7 @@ impl std::ops::Add for Sums {
     }
 }
 
-/// Integral of a rate over increasing times [s], by the trapezoidal rule; 0 of fewer than two samples.
+/// Integral of a rate over increasing times (s), by the trapezoidal rule; 0 of fewer than two samples.
 pub fn integral(time_s: &[f64], rate: &[f64]) -> f64 {
     time_s.windows(2).zip(rate.windows(2)).map(|(t, y)| (t[1] - t[0]) * f64::midpoint(y[0], y[1])).sum()
 }

@@ -21,7 +21,9 @@ pub(crate) fn clock_s(text: &str) -> Option<f64> {
     let whole = |text: &str| text.parse::<u32>().ok().map(f64::from);
     let (hours, minutes, seconds) = match parts[..] {
         [hours, minutes, rest] => (whole(hours)?, whole(minutes)?, seconds(rest)?),
-        [minutes, rest] if rest.contains(['.', ',']) && half.is_none() => (0.0, whole(minutes)?, seconds(rest)?),
+        [minutes, rest] if rest.contains(['.', ',']) && half.is_none() => {
+            (0.0, whole(minutes)?, seconds(rest)?)
+        }
         _ => return None,
     };
     if hours >= 25.0 || minutes >= 60.0 || seconds >= 61.0 {
@@ -44,7 +46,8 @@ pub(crate) fn date_s(text: &str, order: Option<DateOrder>) -> Option<f64> {
         DateOrder::Dmy => (c, b, a),
         DateOrder::Mdy => (c, a, b),
     };
-    let (mut year, month, day): (i64, u32, u32) = (year.parse().ok()?, month.parse().ok()?, day.parse().ok()?);
+    let (mut year, month, day): (i64, u32, u32) =
+        (year.parse().ok()?, month.parse().ok()?, day.parse().ok()?);
     if (0..100).contains(&year) {
         year += 2000;
     }

@@ -72,8 +72,11 @@ impl Header {
 
 /// Lower case, with one underscore for whatever stands between words.
 pub(crate) fn key(text: &str) -> String {
-    let words: Vec<String> =
-        text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_lowercase).collect();
+    let words: Vec<String> = text
+        .split(|c: char| !c.is_alphanumeric())
+        .filter(|word| !word.is_empty())
+        .map(str::to_lowercase)
+        .collect();
     words.join("_")
 }
 
@@ -94,7 +97,8 @@ mod tests {
 
     #[test]
     fn units_are_found_in_every_place_where_headers_have_them() {
-        for header in ["Velocity [km/h]", "vel (km/h)", "speed_kmh", "Speed km/h", "Speed, km/h", "v {km/h}"] {
+        for header in ["Velocity [km/h]", "vel (km/h)", "speed_kmh", "Speed km/h", "Speed, km/h", "v {km/h}"]
+        {
             let unit = Header::of(header).unit.unwrap().unwrap();
             assert!((unit.to_si(36.0) - 10.0).abs() < 1e-12, "{header}");
         }

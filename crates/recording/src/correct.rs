@@ -48,7 +48,10 @@ mod tests {
 
     #[test]
     fn bias_and_scale_are_taken_out_in_this_order() {
-        assert_eq!(with(Sensor { scale: Some(2.0), bias: Some(1.0), ..Sensor::default() }), [0.0, 1.0, 2.0, 4.0]);
+        assert_eq!(
+            with(Sensor { scale: Some(2.0), bias: Some(1.0), ..Sensor::default() }),
+            [0.0, 1.0, 2.0, 4.0]
+        );
     }
 
     /// The ramp is 1 + 2 t; read half a second late it was 2 at t = 0.

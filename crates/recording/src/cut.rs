@@ -60,7 +60,9 @@ mod tests {
     use headland_trace::Origin;
 
     fn drive() -> Trace {
-        let mut trace = Trace::new((0..40).map(f64::from).map(|t| if t < 30.0 { t } else { t + 20.0 }).collect()).unwrap();
+        let mut trace =
+            Trace::new((0..40).map(f64::from).map(|t| if t < 30.0 { t } else { t + 20.0 }).collect())
+                .unwrap();
         let speed = (0..40).map(|row| if row < 15 { 10.0 } else { 3.0 }).collect();
         trace.push("speed_m_s", speed, Origin::Measured).unwrap();
         trace
@@ -72,7 +74,10 @@ mod tests {
         let mut notices = Vec::new();
         let found = pieces(&drive(), &[], Some(&split), "r", &mut notices);
         assert_eq!(found.iter().map(Trace::len).collect::<Vec<_>>(), [15, 15, 10]);
-        assert_eq!((notices[0].kind, notices[0].count, notices[0].first_s), (NoticeKind::Split, 2, Some(15.0)));
+        assert_eq!(
+            (notices[0].kind, notices[0].count, notices[0].first_s),
+            (NoticeKind::Split, 2, Some(15.0))
+        );
     }
 
     #[test]

@@ -200,8 +200,9 @@ impl Amount {
         match self {
             Self::Number(value) => Ok(*value),
             Self::Text(text) => {
-                let mut unit = unit_of_name(name)
-                    .ok_or_else(|| format!("`{name}` ends in no unit, expected a number instead of `{text}`"))?;
+                let mut unit = unit_of_name(name).ok_or_else(|| {
+                    format!("`{name}` ends in no unit, expected a number instead of `{text}`")
+                })?;
                 let value = parse_quantity(text, &unit).map_err(|error| error.to_string())?;
                 // A spread is a difference: the zero of its scale cancels.
                 let zero = parse_quantity(&zero_of(text), &unit).unwrap_or(0.0);
@@ -214,7 +215,8 @@ impl Amount {
 
 /// The same unit behind a zero: `"2 °F"` gives `"0 °F"`.
 fn zero_of(text: &str) -> String {
-    let unit = text.trim().trim_start_matches(|c: char| c.is_ascii_digit() || matches!(c, '.' | '+' | '-' | '_'));
+    let unit =
+        text.trim().trim_start_matches(|c: char| c.is_ascii_digit() || matches!(c, '.' | '+' | '-' | '_'));
     format!("0 {unit}")
 }
 

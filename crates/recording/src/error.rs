@@ -132,7 +132,9 @@ pub enum RecordingError {
         hint: String,
     },
     /// A channel's name is a known one misspelt.
-    #[error("no channel `{name}`; did you mean `{suggestion}`? A name of your own has to differ in more than one letter\n  {at}")]
+    #[error(
+        "no channel `{name}`; did you mean `{suggestion}`? A name of your own has to differ in more than one letter\n  {at}"
+    )]
     Misspelt {
         /// Where.
         at: Place,
@@ -154,7 +156,9 @@ pub enum RecordingError {
         hint: String,
     },
     /// A log has no column of time.
-    #[error("no time column among {present}; expected one named `time_s` or `Time`, or `time: (column: \"...\")` in the description\n  {at}")]
+    #[error(
+        "no time column among {present}; expected one named `time_s` or `Time`, or `time: (column: \"...\")` in the description\n  {at}"
+    )]
     NoTime {
         /// The log's header.
         at: Place,
@@ -162,7 +166,9 @@ pub enum RecordingError {
         present: String,
     },
     /// Date cells whose day and month could be either way round.
-    #[error("`{found}` in column `{column}` could be day/month or month/day; write `time: (order: dmy)` or `mdy`\n  {at}")]
+    #[error(
+        "`{found}` in column `{column}` could be day/month or month/day; write `time: (order: dmy)` or `mdy`\n  {at}"
+    )]
     DateOrder {
         /// The first such cell.
         at: Place,
@@ -188,7 +194,9 @@ pub enum RecordingError {
         what: &'static str,
     },
     /// A log begins with numbers instead of names.
-    #[error("the first row starts with the number `{found}`, expected the columns' names; write `format: csv(names: [...])` to give them\n  {at}")]
+    #[error(
+        "the first row starts with the number `{found}`, expected the columns' names; write `format: csv(names: [...])` to give them\n  {at}"
+    )]
     NoHeader {
         /// The row.
         at: Place,
@@ -228,7 +236,9 @@ pub enum RecordingError {
         after_s: f64,
     },
     /// A byte that the encoding does not have.
-    #[error("a byte that is no {encoding}, expected text; name the file's encoding, as in `format: csv(encoding: \"windows-1252\")`\n  {at}")]
+    #[error(
+        "a byte that is no {encoding}, expected text; name the file's encoding, as in `format: csv(encoding: \"windows-1252\")`\n  {at}"
+    )]
     Encoding {
         /// The line.
         at: Place,

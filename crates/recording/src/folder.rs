@@ -53,7 +53,9 @@ mod tests {
     #[test]
     fn a_variable_that_is_not_set_is_named() {
         let error = folder("${HEADLAND_NO_SUCH_VARIABLE}/a").unwrap_err();
-        assert!(matches!(&error, RecordingError::Variable { name, .. } if name == "HEADLAND_NO_SUCH_VARIABLE"));
+        assert!(
+            matches!(&error, RecordingError::Variable { name, .. } if name == "HEADLAND_NO_SUCH_VARIABLE")
+        );
         assert!(error.to_string().contains("HEADLAND_NO_SUCH_VARIABLE"));
     }
 

@@ -1,7 +1,7 @@
 //! How a text log is laid out: delimiter, decimal mark, where its header stands. Guessed where the description is silent.
 
 use crate::cells::{Cell, number};
-use crate::clock::{clock_s, date_time_s, date_s};
+use crate::clock::{clock_s, date_s, date_time_s};
 use crate::column_unit::unit_in_words;
 use crate::describe::{DateOrder, Format};
 use crate::{Place, RecordingError};
@@ -137,7 +137,8 @@ impl Layout {
             return Err(RecordingError::Empty { at: Place::new(path, header_line, 0), what });
         }
         let sample = rows[first..].to_vec();
-        let decimal_comma = wanted.decimal_comma.unwrap_or_else(|| delimiter != b',' && has_decimal_commas(&sample));
+        let decimal_comma =
+            wanted.decimal_comma.unwrap_or_else(|| delimiter != b',' && has_decimal_commas(&sample));
         Ok(Self {
             delimiter,
             decimal_comma,
@@ -153,8 +154,11 @@ impl Layout {
 
 /// The cells of one line.
 fn cells(line: &str, delimiter: u8) -> Vec<String> {
-    let mut reader =
-        csv::ReaderBuilder::new().has_headers(false).flexible(true).delimiter(delimiter).from_reader(line.as_bytes());
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .delimiter(delimiter)
+        .from_reader(line.as_bytes());
     let mut record = csv::StringRecord::new();
     match reader.read_record(&mut record) {
         Ok(true) => record.iter().map(|cell| cell.trim().to_owned()).collect(),
@@ -270,7 +274,8 @@ mod tests {
 
     #[test]
     fn preamble_and_a_row_of_units_are_passed_over() {
-        let text = "Logger v2, serial 17\nDriver;Smith\n\nTime;Speed;Mode\n[s];[km/h];\n0,0;3,5;N\n0,1;3,6;N\n";
+        let text =
+            "Logger v2, serial 17\nDriver;Smith\n\nTime;Speed;Mode\n[s];[km/h];\n0,0;3,5;N\n0,1;3,6;N\n";
         let found = layout(text).unwrap();
         assert_eq!(found.header, ["Time", "Speed", "Mode"]);
         assert_eq!(found.units, ["s", "km/h", ""]);

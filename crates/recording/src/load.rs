@@ -8,8 +8,8 @@ use crate::source::{Source, open};
 use crate::time_plan::TimePlan;
 use crate::validate::Described;
 use crate::{
-    Check, CheckedRun, Notice, NoticeKind, Place, RecordedRun, Recording, RecordingError, Sensor, cut, folder, look,
-    parquet_log, rows,
+    Check, CheckedRun, Notice, NoticeKind, Place, RecordedRun, Recording, RecordingError, Sensor, cut,
+    folder, look, parquet_log, rows,
 };
 use headland_trace::{Origin, Trace};
 use std::path::{Path, PathBuf};
@@ -67,6 +67,7 @@ pub fn load(path: &Path) -> Result<Recording, RecordingError> {
             }
         }
     }
+    look::at_recording(&runs, &mut notices);
     let known = described.known(None)?;
     Ok(Recording { about: described.text.about.clone(), path: path.to_owned(), runs, known, notices })
 }
@@ -97,9 +98,10 @@ pub fn check(path: &Path) -> Result<Check, RecordingError> {
 
 fn notes(described: &Described) -> Vec<Notice> {
     let shared = described.text.notes.iter().map(|text| Notice::new("", NoticeKind::Note, text.clone()));
-    let own = described.text.runs.iter().flat_map(|run| {
-        run.notes.iter().map(|text| Notice::new(&run.id, NoticeKind::Note, text.clone()))
-    });
+    let own =
+        described.text.runs.iter().flat_map(|run| {
+            run.notes.iter().map(|text| Notice::new(&run.id, NoticeKind::Note, text.clone()))
+        });
     shared.chain(own).collect()
 }
 
@@ -149,13 +151,15 @@ fn read_log(
                 expected: format!("csv, which {} seems to be", path.display()),
             });
         }
-        Source::Parquet => {
-            parquet_log::read(&path, &channels, described.text.keep_others, &run.id, notices)?
-        }
+        Source::Parquet => parquet_log::read(&path, &channels, described.text.keep_others, &run.id, notices)?,
         Source::Text(text) => {
             let layout = Layout::of(&text.start, &path, &Wanted::of(format, &format_at)?)?;
-            let columns =
-                Columns { path: &path, names: &layout.header, units: &layout.units, line: layout.header_line };
+            let columns = Columns {
+                path: &path,
+                names: &layout.header,
+                units: &layout.units,
+                line: layout.header_line,
+            };
             let (time, time_at) = time_description(described, &channels);
             let time = TimePlan::of(
                 time.as_ref().map(|time| (time, &time_at)),
@@ -166,11 +170,11 @@ fn read_log(
                 notices,
             )?;
             let taken = time.columns();
-            let outputs =
-                outputs(&channels, described.text.keep_others, &taken, &columns, &run.id, notices)?;
+            let outputs = outputs(&channels, described.text.keep_others, &taken, &columns, &run.id, notices)?;
             let plan = Plan { time, outputs };
             let format = told(&layout, text.encoding, text.gzip);
-            let table = rows::read(text.into_reader(layout.skip), &path, &layout, &plan, limit, &run.id, notices)?;
+            let table =
+                rows::read(text.into_reader(layout.skip), &path, &layout, &plan, limit, &run.id, notices)?;
             let bad = |source| RecordingError::Trace { at: Place::file(&path), source };
             let mut trace = Trace::new(table.time_s).map_err(bad)?;
             for (output, values) in plan.outputs.iter().zip(table.columns) {
@@ -178,8 +182,11 @@ fn read_log(
                     trace.push(output.name.clone(), values, Origin::Measured).map_err(bad)?;
                 }
             }
-            let sensors =
-                plan.outputs.iter().filter_map(|output| Some((output.name.clone(), output.sensor?))).collect();
+            let sensors = plan
+                .outputs
+                .iter()
+                .filter_map(|output| Some((output.name.clone(), output.sensor?)))
+                .collect();
             Log { traces: vec![(None, trace)], sensors, format }
         }
     };

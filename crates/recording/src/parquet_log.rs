@@ -34,12 +34,14 @@ pub(crate) fn read(
         for output in &outputs {
             let values = (0..trace.len())
                 .map(|row| {
-                    output.value(output.columns.iter().map(|column| read.trace.channels()[*column].values[row]))
+                    output
+                        .value(output.columns.iter().map(|column| read.trace.channels()[*column].values[row]))
                 })
                 .collect();
             trace.push(output.name.clone(), values, Origin::Measured).map_err(bad)?;
         }
-        log.sensors = outputs.iter().filter_map(|output| Some((output.name.clone(), output.sensor?))).collect();
+        log.sensors =
+            outputs.iter().filter_map(|output| Some((output.name.clone(), output.sensor?))).collect();
         log.traces.push((several.then_some(read.id), trace));
     }
     Ok(log)

@@ -9,7 +9,8 @@ pub(crate) struct Places {
 impl Places {
     /// Reads a text that RON has accepted.
     pub fn of(source: &str) -> Self {
-        let mut scan = Scan { text: source.chars().collect(), at: 0, line: 1, column: 1, places: Self::default() };
+        let mut scan =
+            Scan { text: source.chars().collect(), at: 0, line: 1, column: 1, places: Self::default() };
         scan.value("");
         scan.places
     }

@@ -90,7 +90,8 @@ impl Columns<'_> {
 
     /// All headers, for a message.
     pub fn list(&self) -> String {
-        let quoted: Vec<String> = self.names.iter().filter(|name| !name.is_empty()).map(|name| format!("`{name}`")).collect();
+        let quoted: Vec<String> =
+            self.names.iter().filter(|name| !name.is_empty()).map(|name| format!("`{name}`")).collect();
         quoted.join(", ")
     }
 
@@ -156,16 +157,18 @@ pub(crate) fn outputs(
 }
 
 /// The channel that a header names by itself, `speed_m_s` or `Speed [km/h]`, and what to say about it.
-fn known_channel(header: &str, unit: Option<&Result<Unit, String>>) -> (Option<&'static str>, Option<String>) {
+fn known_channel(
+    header: &str,
+    unit: Option<&Result<Unit, String>>,
+) -> (Option<&'static str>, Option<String>) {
     if let Some(exact) = names::KNOWN.iter().find(|known| known.name == header) {
         return (Some(exact.name), None);
     }
     let Some(Ok(unit)) = unit else { return (None, None) };
     let key = Header::of(header).key();
     let same = names::KNOWN.iter().find(|known| {
-        let fits = unit_of_name(known.name).map_or(unit.dimension == headland_units::Dimension::NONE, |own| {
-            own.dimension == unit.dimension
-        });
+        let fits = unit_of_name(known.name)
+            .map_or(unit.dimension == headland_units::Dimension::NONE, |own| own.dimension == unit.dimension);
         stem(known.name) == key && fits && known.name != "time_s"
     });
     let text = same.map(|known| format!("column `{header}` is read as `{}`", known.name));
@@ -196,7 +199,8 @@ fn from_description(
     }
     let unit = unit_of(channel, at, columns, indices[0], run, notices)?;
     for other in &indices[1..] {
-        if let (None, Some(Ok(first)), Some(Ok(other_unit))) = (&channel.unit, columns.unit(indices[0]), columns.unit(*other))
+        if let (None, Some(Ok(first)), Some(Ok(other_unit))) =
+            (&channel.unit, columns.unit(indices[0]), columns.unit(*other))
             && first.symbol != other_unit.symbol
         {
             return Err(RecordingError::UnitMisfit {
@@ -243,7 +247,8 @@ fn unit_of(
         (Some(text), header) => {
             let unit = unit_in_words(text).map_err(|text| no_unit(at, &text, parse_unit(&text).err()))?;
             if let Some(Ok(said)) = header
-                && (said.dimension != unit.dimension || (said.factor - unit.factor).abs() > 1e-9 * unit.factor)
+                && (said.dimension != unit.dimension
+                    || (said.factor - unit.factor).abs() > 1e-9 * unit.factor)
             {
                 let text = format!(
                     "column `{}` says {}, the description says {}; the description is followed",

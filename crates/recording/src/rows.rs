@@ -52,7 +52,8 @@ pub(crate) fn read(
             Ok(false) => break,
             Err(error) => return Err(stopped(path, line, error)),
         }
-        line = layout.skip + record.position().map_or(0, |position| usize::try_from(position.line()).unwrap_or(0));
+        line = layout.skip
+            + record.position().map_or(0, |position| usize::try_from(position.line()).unwrap_or(0));
         if record.len() == 1 && record[0].trim().is_empty() {
             continue;
         }
@@ -80,7 +81,11 @@ pub(crate) fn read(
         if let Some(before_s) = table.time_s.last().copied() {
             now_s = plan.time.after(before_s, now_s);
             if now_s < before_s {
-                return Err(RecordingError::Backwards { at: Place::new(path, line, 0), before_s, after_s: now_s });
+                return Err(RecordingError::Backwards {
+                    at: Place::new(path, line, 0),
+                    before_s,
+                    after_s: now_s,
+                });
             }
             if now_s == before_s {
                 if repeats.count == 0 {
@@ -93,20 +98,28 @@ pub(crate) fn read(
         table.time_s.push(now_s);
         for (index, (output, kept)) in plan.outputs.iter().zip(&mut table.columns).enumerate() {
             let Some(values) = kept else { continue };
-            let text = output.columns.iter().find(|column| number(&record[**column], layout.decimal_comma) == Cell::Text);
+            let text = output
+                .columns
+                .iter()
+                .find(|column| number(&record[**column], layout.decimal_comma) == Cell::Text);
             if let Some(column) = text {
                 if output.strict || numbers_seen[index] {
                     return Err(cell_error(*column, "a number, or nothing where there is no value"));
                 }
                 *kept = None;
-                let text = format!("column `{}` holds text (`{}`) and is left out", output.name, record[*column].trim());
+                let text = format!(
+                    "column `{}` holds text (`{}`) and is left out",
+                    output.name,
+                    record[*column].trim()
+                );
                 notices.push(Notice::new(run, NoticeKind::Text, text).channel(&output.name));
                 continue;
             }
-            let cells = output.columns.iter().map(|column| match number(&record[*column], layout.decimal_comma) {
-                Cell::Number(value) => value,
-                _ => f64::NAN,
-            });
+            let cells =
+                output.columns.iter().map(|column| match number(&record[*column], layout.decimal_comma) {
+                    Cell::Number(value) => value,
+                    _ => f64::NAN,
+                });
             let value = output.value(cells);
             numbers_seen[index] |= !value.is_nan();
             values.push(value);
@@ -124,7 +137,8 @@ pub(crate) fn read(
         if repeats.count > table.time_s.len() {
             text.push_str("; the clock is coarser than the rows, `time: (period_s: ...)` would keep them");
         }
-        notices.push(Notice::new(run, NoticeKind::Repeated, text).count(repeats.count).first(repeats.first_s));
+        notices
+            .push(Notice::new(run, NoticeKind::Repeated, text).count(repeats.count).first(repeats.first_s));
     }
     if empty_rows > 0 {
         let text = format!("{empty_rows} rows hold nothing and are left out");

@@ -36,7 +36,8 @@ type Body = Chain<Cursor<Vec<u8>>, Box<dyn Read>>;
 impl Text {
     /// The whole text as a stream, without its first `skip` lines.
     pub fn into_reader(self, skip: usize) -> impl Read {
-        let from = (0..skip).fold(0, |at, _| self.start[at..].find('\n').map_or(self.start.len(), |end| at + end + 1));
+        let from = (0..skip)
+            .fold(0, |at, _| self.start[at..].find('\n').map_or(self.start.len(), |end| at + end + 1));
         Cursor::new(self.start.into_bytes().split_off(from)).chain(Cursor::new(self.after)).chain(self.rest)
     }
 }
@@ -82,7 +83,8 @@ pub(crate) fn open(
     let count = fill(&mut rest, &mut start).map_err(|error| failed(path, 0, &error))?;
     start.truncate(count);
     let whole = count < LOOK;
-    let end = if whole { count } else { start.iter().rposition(|byte| *byte == b'\n').map_or(count, |at| at + 1) };
+    let end =
+        if whole { count } else { start.iter().rposition(|byte| *byte == b'\n').map_or(count, |at| at + 1) };
     let after = start.split_off(end);
     // The decoder gives UTF-8, and a line's end is no part of a character.
     let start = String::from_utf8_lossy(&start).into_owned();

@@ -101,7 +101,6 @@ impl<R: Read> Read for Utf8<R> {
     }
 }
 
-
 #[cfg(test)]
 mod tests {
     use super::*;

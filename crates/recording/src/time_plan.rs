@@ -54,7 +54,9 @@ impl TimePlan {
     pub fn columns(&self) -> Vec<usize> {
         match *self {
             Self::Period(_) => Vec::new(),
-            Self::Number { column, .. } | Self::DateTime { column, .. } | Self::Clock { column } => vec![column],
+            Self::Number { column, .. } | Self::DateTime { column, .. } | Self::Clock { column } => {
+                vec![column]
+            }
             Self::DateAndClock { date, clock, .. } => vec![date, clock],
         }
     }
@@ -77,12 +79,13 @@ impl TimePlan {
                 Cell::Number(value) => Ok(value * unit_s + 0.0),
                 _ => Err((column, "a time as a number")),
             },
-            Self::DateTime { column, order } => {
-                date_time_s(cell(column), order).ok_or((column, "a date and a time, as in 2023-10-23 06:50:50"))
-            }
+            Self::DateTime { column, order } => date_time_s(cell(column), order)
+                .ok_or((column, "a date and a time, as in 2023-10-23 06:50:50")),
             Self::DateAndClock { date, clock, order } => {
-                let day = date_s(cell(date), order)
-                    .ok_or((date, "a date; where dates are damaged, `time: (clock: \"...\")` does without them"))?;
+                let day = date_s(cell(date), order).ok_or((
+                    date,
+                    "a date; where dates are damaged, `time: (clock: \"...\")` does without them",
+                ))?;
                 Ok(day + clock_s(cell(clock)).ok_or((clock, "a clock time, as in 06:50:50.2"))?)
             }
             Self::Clock { column } => clock_s(cell(column)).ok_or((column, "a clock time, as in 06:50:50.2")),
@@ -150,7 +153,10 @@ impl TimePlan {
         if clock_s(first).is_some() {
             let date = match find(&wanted.date)? {
                 Some(date) => Some(date),
-                None => columns.names.iter().position(|name| matches!(key(name).as_str(), "date" | "datum" | "day")),
+                None => columns
+                    .names
+                    .iter()
+                    .position(|name| matches!(key(name).as_str(), "date" | "datum" | "day")),
             };
             return Ok(match date {
                 Some(date) => {
@@ -196,7 +202,8 @@ fn numeric(
         (None, Some(Err(text))) => read(&text)?.factor,
         (None, None) => {
             // Epochs of 2001 and later in seconds, milli-, micro- or nanoseconds lie three digits apart.
-            let guessed = [(1e18, "ns", 1e-9), (1e15, "µs", 1e-6), (1e12, "ms", 1e-3), (EPOCH_FROM, "s", 1.0)];
+            let guessed =
+                [(1e18, "ns", 1e-9), (1e15, "µs", 1e-6), (1e12, "ms", 1e-3), (EPOCH_FROM, "s", 1.0)];
             if let Some((_, symbol, factor)) = guessed.iter().find(|(from, ..)| first.abs() >= *from) {
                 let text = format!("`{}` is taken to be {symbol} since 1970", columns.names[column]);
                 notices.push(Notice::new(run, NoticeKind::Assumed, text));
@@ -238,13 +245,15 @@ fn order(
         return Ok(wanted);
     }
     let cells = || sample.iter().filter_map(|row| row.get(column));
-    let shown = cells().find(|cell| clear(cell)).and_then(|cell| {
-        order_of(cell.split(['T', ' ']).next().unwrap_or_default())
-    });
+    let shown = cells()
+        .find(|cell| clear(cell))
+        .and_then(|cell| order_of(cell.split(['T', ' ']).next().unwrap_or_default()));
     if shown.is_some() {
         return Ok(shown);
     }
-    match cells().find(|cell| date_s(cell.split(['T', ' ']).next().unwrap_or_default(), Some(DateOrder::Dmy)).is_some()) {
+    match cells().find(|cell| {
+        date_s(cell.split(['T', ' ']).next().unwrap_or_default(), Some(DateOrder::Dmy)).is_some()
+    }) {
         Some(found) => Err(RecordingError::DateOrder {
             at: Place::new(columns.path, columns.line + 1, 0),
             column: columns.names[column].clone(),

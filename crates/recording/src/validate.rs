@@ -23,8 +23,11 @@ impl Described {
         if path.is_dir() {
             return Err(RecordingError::Folder { at, path: path.to_owned() });
         }
-        let bytes = fs::read(path)
-            .map_err(|source| RecordingError::File { at: at.clone(), path: path.to_owned(), source })?;
+        let bytes = fs::read(path).map_err(|source| RecordingError::File {
+            at: at.clone(),
+            path: path.to_owned(),
+            source,
+        })?;
         let text = String::from_utf8(bytes).map_err(|error| {
             let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
             let line = before.iter().filter(|byte| **byte == b'\n').count() + 1;
@@ -59,14 +62,22 @@ impl Described {
     /// The channels of a run: its own, then the shared ones that it does not describe itself.
     pub fn channels(&self, run: usize) -> Vec<(ChannelDescription, Place)> {
         let place = |path: String, channel: &ChannelDescription| {
-            let field = if channel.column.is_some() { "column" } else if channel.columns.is_some() { "columns" } else { "is" };
+            let field = if channel.column.is_some() {
+                "column"
+            } else if channel.columns.is_some() {
+                "columns"
+            } else {
+                "is"
+            };
             self.at(&format!("{path}.{field}"))
         };
         let own = &self.text.runs[run].channels;
         let mut all: Vec<_> = own
             .iter()
             .enumerate()
-            .map(|(index, channel)| (channel.clone(), place(format!("runs[{run}].channels[{index}]"), channel)))
+            .map(|(index, channel)| {
+                (channel.clone(), place(format!("runs[{run}].channels[{index}]"), channel))
+            })
             .collect();
         for (index, channel) in self.text.channels.iter().enumerate() {
             if !own.iter().any(|other| other.is == channel.is) {
@@ -94,7 +105,11 @@ impl Described {
         for (index, known) in all.iter().enumerate() {
             let at = |field: &str| self.at(&format!("{path}[{index}].{field}"));
             if found.iter().any(|other| other.name == known.name) {
-                return Err(RecordingError::Twice { at: at("name"), what: "the quantity", name: known.name.clone() });
+                return Err(RecordingError::Twice {
+                    at: at("name"),
+                    what: "the quantity",
+                    name: known.name.clone(),
+                });
             }
             let amount = |amount: &crate::describe::Amount, field: &str| {
                 amount
@@ -173,20 +188,27 @@ impl Described {
         for (index, channel) in channels.iter().enumerate() {
             let at = |field: &str| self.at(&format!("{path}[{index}].{field}"));
             if channels[..index].iter().any(|other| other.is == channel.is) {
-                return Err(RecordingError::Twice { at: at("is"), what: "the channel", name: channel.is.clone() });
+                return Err(RecordingError::Twice {
+                    at: at("is"),
+                    what: "the channel",
+                    name: channel.is.clone(),
+                });
             }
             if let Some(suggestion) = misspelt(&channel.is) {
                 return Err(RecordingError::Misspelt { at: at("is"), name: channel.is.clone(), suggestion });
             }
             if channel.column.is_some() && channel.columns.is_some() {
                 let expected = "left out where `column` is given";
-                return Err(value_error(at("columns"), "columns", f64::NAN, expected).found("given beside `column`"));
+                return Err(
+                    value_error(at("columns"), "columns", f64::NAN, expected).found("given beside `column`")
+                );
             }
             let several = channel.columns.as_ref().map_or(1, Vec::len);
             if several == 0 || (several > 1 && channel.combine.is_none()) {
                 let found = if several == 0 { "empty" } else { "left out" };
                 let field = if several == 0 { "columns" } else { "combine" };
-                let expected = if several == 0 { "at least one column" } else { "mean or sum of the columns" };
+                let expected =
+                    if several == 0 { "at least one column" } else { "mean or sum of the columns" };
                 return Err(value_error(at(field), field, f64::NAN, expected).found(found));
             }
             for (field, value) in [
@@ -197,9 +219,12 @@ impl Described {
             ] {
                 let positive = matches!(field, "radius_m" | "density_kg_m3");
                 if let Some(value) = value
-                    && (!value.is_finite() || (field == "scale" && value == 0.0) || (positive && value <= 0.0))
+                    && (!value.is_finite()
+                        || (field == "scale" && value == 0.0)
+                        || (positive && value <= 0.0))
                 {
-                    let expected = if positive { "more than 0" } else { "a number, for `scale` other than 0" };
+                    let expected =
+                        if positive { "more than 0" } else { "a number, for `scale` other than 0" };
                     return Err(value_error(at(field), field, value, expected));
                 }
             }
@@ -213,7 +238,12 @@ impl Described {
 
 fn check_sensor(sensor: &SensorDescription, at: impl Fn(&str) -> Place) -> Result<(), RecordingError> {
     for (field, value, fits, expected) in [
-        ("noise", sensor.noise, sensor.noise.is_none_or(|noise| noise >= 0.0), "a standard deviation of 0 or more"),
+        (
+            "noise",
+            sensor.noise,
+            sensor.noise.is_none_or(|noise| noise >= 0.0),
+            "a standard deviation of 0 or more",
+        ),
         ("latency_s", sensor.latency_s, true, "a number"),
         ("scale", sensor.scale, sensor.scale.is_none_or(|scale| scale != 0.0), "a number other than 0"),
         ("bias", sensor.bias, true, "a number"),
@@ -228,7 +258,12 @@ fn check_sensor(sensor: &SensorDescription, at: impl Fn(&str) -> Place) -> Resul
 }
 
 fn value_error(at: Place, field: &str, found: f64, expected: &str) -> RecordingError {
-    RecordingError::Value { at, field: field.to_owned(), found: found.to_string(), expected: expected.to_owned() }
+    RecordingError::Value {
+        at,
+        field: field.to_owned(),
+        found: found.to_string(),
+        expected: expected.to_owned(),
+    }
 }
 
 impl RecordingError {
@@ -251,7 +286,9 @@ fn misspelt(name: &str) -> Option<String> {
         let unitless = headland_units::unit_of_name(name).is_none();
         names::KNOWN.iter().find(|known| {
             let own = stem(known.name);
-            own != known.name && unitless && (name == own || name.strip_prefix(own).is_some_and(is_unit_ending))
+            own != known.name
+                && unitless
+                && (name == own || name.strip_prefix(own).is_some_and(is_unit_ending))
         })
     };
     near.or_else(same).map(|known| known.name.to_owned())

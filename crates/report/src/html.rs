@@ -180,7 +180,8 @@ mod tests {
     #[test]
     fn a_script_in_a_run_name_stays_a_name() {
         let html = evil().to_html().unwrap();
-        assert!(!html.contains("alert('"), "a quote came through");
+        let (markup, _) = html.split_once("id=\"plots\"").unwrap();
+        assert!(!markup.contains("alert('"), "a quote came through");
         assert_eq!(html.matches("<script").count(), 3, "data, ECharts and ours");
         assert_eq!(html.matches("</script").count(), 3);
         assert_eq!(data(&html)[0]["series"][0]["name"], EVIL);

@@ -47,7 +47,7 @@ pub(crate) fn pieces(
         let mut text = format!("the log is cut at {} places, the first at {} s", cuts.len(), time[cuts[0]]);
         if left_out > 0 {
             let shortest = split.shortest_s.unwrap_or(SHORTEST_S);
-            text.push_str(&format!("; {left_out} pieces shorter than {shortest} s are left out"));
+            text = format!("{text}; {left_out} pieces shorter than {shortest} s are left out");
         }
         notices.push(Notice::new(run, NoticeKind::Split, text).count(cuts.len()).first(time[cuts[0]]));
     }

@@ -71,6 +71,7 @@ pub(crate) enum Purpose {
 
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(clippy::struct_field_names, reason = "the unit ends each name")]
 pub(crate) struct Split {
     #[serde(default)]
     pub speed_jump_m_s: Option<f64>,

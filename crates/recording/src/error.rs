@@ -118,7 +118,7 @@ pub enum RecordingError {
         reason: String,
     },
     /// A unit measures something else than its channel holds.
-    #[error("`{unit}` does not fit `{channel}`: expected a unit of {expected}{hint}\n  {at}")]
+    #[error("`{unit}` does not fit `{channel}`: expected a unit of {expected}\n  {at}")]
     UnitMisfit {
         /// Where.
         at: Place,
@@ -126,10 +126,8 @@ pub enum RecordingError {
         unit: String,
         /// The channel.
         channel: String,
-        /// The unit that the channel has.
+        /// The unit that the channel has, and what else could be meant.
         expected: String,
-        /// What else could be meant; empty or starting with `; `.
-        hint: String,
     },
     /// A channel's name is a known one misspelt.
     #[error(

@@ -115,17 +115,16 @@ impl Layout {
         let fixed = wanted.skip_lines.is_some() || wanted.names.is_some();
         let head = if wanted.names.is_some() { 0 } else { header_row(&rows, width, fixed) };
         let mut first = head;
-        let (header, header_line) = match &wanted.names {
-            Some(names) => (names.clone(), 0),
-            None => {
-                let found = &rows[head];
-                if found.iter().filter(|cell| !cell.is_empty()).all(|cell| is_value(cell)) {
-                    let at = Place::new(path, lines[head].0 + 1, 1);
-                    return Err(RecordingError::NoHeader { at, found: found[0].clone() });
-                }
-                first += 1;
-                (names(found), lines[head].0 + 1)
+        let (header, header_line) = if let Some(names) = &wanted.names {
+            (names.clone(), 0)
+        } else {
+            let found = &rows[head];
+            if found.iter().filter(|cell| !cell.is_empty()).all(|cell| is_value(cell)) {
+                let at = Place::new(path, lines[head].0 + 1, 1);
+                return Err(RecordingError::NoHeader { at, found: found[0].clone() });
             }
+            first += 1;
+            (names(found), lines[head].0 + 1)
         };
         let mut units = Vec::new();
         if header_line > 0 && rows.get(first).is_some_and(|row| row.len() == header.len() && is_units(row)) {

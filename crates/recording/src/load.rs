@@ -4,12 +4,13 @@ use crate::correct::correct;
 use crate::describe::{Format, Purpose, TimeDescription};
 use crate::layout::{Layout, Wanted};
 use crate::plan::{Columns, Plan, outputs};
+use crate::rows::Rows;
 use crate::source::{Source, open};
 use crate::time_plan::TimePlan;
 use crate::validate::Described;
 use crate::{
     Check, CheckedRun, Notice, NoticeKind, Place, RecordedRun, Recording, RecordingError, Sensor, cut,
-    folder, look, parquet_log, rows,
+    folder, look, parquet_log,
 };
 use headland_trace::{Origin, Trace};
 use std::path::{Path, PathBuf};
@@ -173,8 +174,11 @@ fn read_log(
             let outputs = outputs(&channels, described.text.keep_others, &taken, &columns, &run.id, notices)?;
             let plan = Plan { time, outputs };
             let format = told(&layout, text.encoding, text.gzip);
-            let table =
-                rows::read(text.into_reader(layout.skip), &path, &layout, &plan, limit, &run.id, notices)?;
+            let table = Rows::new(&path, &layout, &plan, &run.id).read(
+                text.into_reader(layout.skip),
+                limit,
+                notices,
+            )?;
             let bad = |source| RecordingError::Trace { at: Place::file(&path), source };
             let mut trace = Trace::new(table.time_s).map_err(bad)?;
             for (output, values) in plan.outputs.iter().zip(table.columns) {

@@ -207,8 +207,7 @@ fn from_description(
                 at: at.clone(),
                 unit: other_unit.symbol,
                 channel: channel.is.clone(),
-                expected: first.symbol.clone(),
-                hint: "; columns that are combined need one unit".to_owned(),
+                expected: format!("{}; columns that are combined need one unit", first.symbol),
             });
         }
     }
@@ -287,10 +286,9 @@ fn unit_of(
     if turned.dimension != expected.dimension {
         return Err(RecordingError::UnitMisfit {
             at: at.clone(),
-            hint: hint(&turned, &expected, &channel.is),
+            expected: format!("{}{}", expected.symbol, hint(&turned, &expected, &channel.is)),
             unit: from.symbol,
             channel: channel.is.clone(),
-            expected: expected.symbol,
         });
     }
     Ok(line(&turned, &expected))

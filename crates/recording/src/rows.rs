@@ -5,6 +5,7 @@ use crate::layout::Layout;
 use crate::plan::Plan;
 use crate::source::failed;
 use crate::{Notice, NoticeKind, Place, RecordingError};
+use csv::StringRecord;
 use std::io::Read;
 use std::path::Path;
 
@@ -16,140 +17,183 @@ pub(crate) struct Table {
     pub columns: Vec<Option<Vec<f64>>>,
 }
 
-/// A row that repeats a time.
-#[derive(Default)]
-struct Repeats {
-    count: usize,
-    first_s: f64,
-    first_line: usize,
+/// A log that is being read.
+pub(crate) struct Rows<'a> {
+    path: &'a Path,
+    layout: &'a Layout,
+    plan: &'a Plan,
+    run: &'a str,
+    table: Table,
+    numbers_seen: Vec<bool>,
+    read: usize,
+    origin_s: Option<f64>,
+    repeats: usize,
+    first_repeat: (f64, usize),
+    without_values: usize,
 }
 
-/// Reads all rows, or the first `limit`.
-pub(crate) fn read(
-    stream: impl Read,
-    path: &Path,
-    layout: &Layout,
-    plan: &Plan,
-    limit: Option<usize>,
-    run: &str,
-    notices: &mut Vec<Notice>,
-) -> Result<Table, RecordingError> {
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .delimiter(layout.delimiter)
-        .comment(layout.comment)
-        .buffer_capacity(1 << 16)
-        .from_reader(stream);
-    let mut record = csv::StringRecord::new();
-    let mut table = Table { time_s: Vec::new(), columns: vec![Some(Vec::new()); plan.outputs.len()] };
-    let mut numbers_seen = vec![false; plan.outputs.len()];
-    let mut repeats = Repeats::default();
-    let (mut empty_rows, mut row, mut line, mut origin_s) = (0, 0, layout.skip, None);
-    while limit.is_none_or(|limit| row < limit) {
-        match reader.read_record(&mut record) {
-            Ok(true) => {}
-            Ok(false) => break,
-            Err(error) => return Err(stopped(path, line, error)),
+impl<'a> Rows<'a> {
+    pub fn new(path: &'a Path, layout: &'a Layout, plan: &'a Plan, run: &'a str) -> Self {
+        let outputs = plan.outputs.len();
+        Self {
+            path,
+            layout,
+            plan,
+            run,
+            table: Table { time_s: Vec::new(), columns: vec![Some(Vec::new()); outputs] },
+            numbers_seen: vec![false; outputs],
+            read: 0,
+            origin_s: None,
+            repeats: 0,
+            first_repeat: (0.0, 0),
+            without_values: 0,
         }
-        line = layout.skip
-            + record.position().map_or(0, |position| usize::try_from(position.line()).unwrap_or(0));
-        if record.len() == 1 && record[0].trim().is_empty() {
-            continue;
+    }
+
+    /// Reads all rows, or the first `limit`.
+    pub fn read(
+        mut self,
+        stream: impl Read,
+        limit: Option<usize>,
+        notices: &mut Vec<Notice>,
+    ) -> Result<Table, RecordingError> {
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .delimiter(self.layout.delimiter)
+            .comment(self.layout.comment)
+            .buffer_capacity(1 << 16)
+            .from_reader(stream);
+        let mut record = StringRecord::new();
+        let mut line = self.layout.skip;
+        while limit.is_none_or(|limit| self.read < limit) {
+            match reader.read_record(&mut record) {
+                Ok(true) => {}
+                Ok(false) => break,
+                Err(error) => return Err(stopped(self.path, line, error)),
+            }
+            let within = record.position().map_or(0, csv::Position::line);
+            line = self.layout.skip + usize::try_from(within).unwrap_or(0);
+            if record.len() == 1 && record[0].trim().is_empty() {
+                continue;
+            }
+            self.row(&record, line, notices)?;
         }
-        if record.len() != layout.header.len() {
-            let at = Place::new(path, line, 0);
-            return Err(RecordingError::Uneven { at, found: record.len(), expected: layout.header.len() });
+        self.tell(notices);
+        if self.table.time_s.is_empty() {
+            let at = Place::new(self.path, self.layout.header_line, 0);
+            return Err(RecordingError::Empty { at, what: "the file has a header and no rows" });
+        }
+        Ok(self.table)
+    }
+
+    fn row(
+        &mut self,
+        record: &StringRecord,
+        line: usize,
+        notices: &mut Vec<Notice>,
+    ) -> Result<(), RecordingError> {
+        if record.len() != self.layout.header.len() {
+            let at = Place::new(self.path, line, 0);
+            return Err(RecordingError::Uneven {
+                at,
+                found: record.len(),
+                expected: self.layout.header.len(),
+            });
         }
         if record.iter().all(|cell| cell.trim().is_empty()) {
-            empty_rows += 1;
-            continue;
+            self.without_values += 1;
+            return Ok(());
         }
-        let cell_error = |column: usize, expected| RecordingError::Cell {
-            at: Place::new(path, line, character(&record, column)),
-            column: layout.header[column].clone(),
-            found: record[column].trim().to_owned(),
-            expected,
-        };
-        let mut now_s = plan
+        let comma = self.layout.decimal_comma;
+        let mut now_s = self
+            .plan
             .time
-            .seconds(row, layout.decimal_comma, |column| &record[column])
-            .map_err(|(column, expected)| cell_error(column, expected))?;
-        let origin = *origin_s.get_or_insert(if plan.time.from_first() { now_s } else { 0.0 });
-        row += 1;
-        now_s -= origin;
-        if let Some(before_s) = table.time_s.last().copied() {
-            now_s = plan.time.after(before_s, now_s);
+            .seconds(self.read, comma, |column| &record[column])
+            .map_err(|(column, expected)| self.cell(record, line, column, expected))?;
+        let starts_at_zero = self.plan.time.starts_at_zero();
+        now_s -= *self.origin_s.get_or_insert(if starts_at_zero { now_s } else { 0.0 });
+        self.read += 1;
+        if let Some(before_s) = self.table.time_s.last().copied() {
+            now_s = self.plan.time.after(before_s, now_s);
             if now_s < before_s {
-                return Err(RecordingError::Backwards {
-                    at: Place::new(path, line, 0),
-                    before_s,
-                    after_s: now_s,
-                });
+                let at = Place::new(self.path, line, 0);
+                return Err(RecordingError::Backwards { at, before_s, after_s: now_s });
             }
             if now_s == before_s {
-                if repeats.count == 0 {
-                    (repeats.first_s, repeats.first_line) = (now_s, line);
+                if self.repeats == 0 {
+                    self.first_repeat = (now_s, line);
                 }
-                repeats.count += 1;
-                continue;
+                self.repeats += 1;
+                return Ok(());
             }
         }
-        table.time_s.push(now_s);
-        for (index, (output, kept)) in plan.outputs.iter().zip(&mut table.columns).enumerate() {
-            let Some(values) = kept else { continue };
-            let text = output
-                .columns
-                .iter()
-                .find(|column| number(&record[**column], layout.decimal_comma) == Cell::Text);
-            if let Some(column) = text {
-                if output.strict || numbers_seen[index] {
-                    return Err(cell_error(*column, "a number, or nothing where there is no value"));
+        self.table.time_s.push(now_s);
+        for (index, output) in self.plan.outputs.iter().enumerate() {
+            let Some(kept) = &mut self.table.columns[index] else { continue };
+            let mut cells = output.columns.iter().map(|column| (*column, number(&record[*column], comma)));
+            if let Some((column, _)) = cells.find(|(_, cell)| *cell == Cell::Text) {
+                if output.strict || self.numbers_seen[index] {
+                    return Err(self.cell(
+                        record,
+                        line,
+                        column,
+                        "a number, or nothing where there is no value",
+                    ));
                 }
-                *kept = None;
-                let text = format!(
-                    "column `{}` holds text (`{}`) and is left out",
-                    output.name,
-                    record[*column].trim()
-                );
-                notices.push(Notice::new(run, NoticeKind::Text, text).channel(&output.name));
+                self.table.columns[index] = None;
+                let found = record[column].trim();
+                let text = format!("column `{}` holds text (`{found}`) and is left out", output.name);
+                notices.push(Notice::new(self.run, NoticeKind::Text, text).channel(&output.name));
                 continue;
             }
-            let cells =
-                output.columns.iter().map(|column| match number(&record[*column], layout.decimal_comma) {
+            let value =
+                output.value(output.columns.iter().map(|column| match number(&record[*column], comma) {
                     Cell::Number(value) => value,
                     _ => f64::NAN,
-                });
-            let value = output.value(cells);
-            numbers_seen[index] |= !value.is_nan();
-            values.push(value);
+                }));
+            self.numbers_seen[index] |= !value.is_nan();
+            kept.push(value);
         }
+        Ok(())
     }
-    if table.time_s.is_empty() {
-        let what = "the file has a header and no rows";
-        return Err(RecordingError::Empty { at: Place::new(path, layout.header_line, 0), what });
-    }
-    if repeats.count > 0 {
-        let mut text = format!(
-            "{} rows repeat the time of the row before and are left out; the first is line {}",
-            repeats.count, repeats.first_line
-        );
-        if repeats.count > table.time_s.len() {
-            text.push_str("; the clock is coarser than the rows, `time: (period_s: ...)` would keep them");
-        }
-        notices
-            .push(Notice::new(run, NoticeKind::Repeated, text).count(repeats.count).first(repeats.first_s));
-    }
-    if empty_rows > 0 {
-        let text = format!("{empty_rows} rows hold nothing and are left out");
-        notices.push(Notice::new(run, NoticeKind::Nan, text).count(empty_rows));
-    }
-    Ok(table)
-}
 
-/// Where in its line a cell starts, as far as the cells before it stand without quotes.
-fn character(record: &csv::StringRecord, column: usize) -> usize {
-    record.iter().take(column).map(|cell| cell.chars().count() + 1).sum::<usize>() + 1
+    fn cell(
+        &self,
+        record: &StringRecord,
+        line: usize,
+        column: usize,
+        expected: &'static str,
+    ) -> RecordingError {
+        // Where the cell starts, as far as the cells before it stand without quotes.
+        let character = record.iter().take(column).map(|cell| cell.chars().count() + 1).sum::<usize>() + 1;
+        RecordingError::Cell {
+            at: Place::new(self.path, line, character),
+            column: self.layout.header[column].clone(),
+            found: record[column].trim().to_owned(),
+            expected,
+        }
+    }
+
+    fn tell(&self, notices: &mut Vec<Notice>) {
+        if self.repeats > 0 {
+            let mut text = format!(
+                "{} rows repeat the time of the row before and are left out; the first is line {}",
+                self.repeats, self.first_repeat.1
+            );
+            if self.repeats > self.table.time_s.len() {
+                text.push_str(
+                    "; the clock is coarser than the rows, `time: (period_s: ...)` would keep them",
+                );
+            }
+            let notice = Notice::new(self.run, NoticeKind::Repeated, text).count(self.repeats);
+            notices.push(notice.first(self.first_repeat.0));
+        }
+        if self.without_values > 0 {
+            let text = format!("{} rows hold nothing and are left out", self.without_values);
+            notices.push(Notice::new(self.run, NoticeKind::Nan, text).count(self.without_values));
+        }
+    }
 }
 
 fn stopped(path: &Path, line: usize, error: csv::Error) -> RecordingError {

@@ -14,7 +14,7 @@ const LOOK: usize = 1 << 18;
 /// A log that has been opened.
 pub(crate) enum Source {
     /// Delimited text.
-    Text(Text),
+    Text(Box<Text>),
     /// A Parquet file, which its own reader opens.
     Parquet,
 }
@@ -88,7 +88,7 @@ pub(crate) fn open(
     let after = start.split_off(end);
     // The decoder gives UTF-8, and a line's end is no part of a character.
     let start = String::from_utf8_lossy(&start).into_owned();
-    Ok(Source::Text(Text { start, rest, after, encoding: encoding.name(), gzip }))
+    Ok(Source::Text(Box::new(Text { start, rest, after, encoding: encoding.name(), gzip })))
 }
 
 /// What stopped the reading of a log, as an error at a line.

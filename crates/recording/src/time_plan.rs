@@ -62,7 +62,7 @@ impl TimePlan {
     }
 
     /// Whether its zero is far away, so that a run's first row becomes zero.
-    pub fn from_first(&self) -> bool {
+    pub fn starts_at_zero(&self) -> bool {
         !matches!(self, Self::Period(_) | Self::Number { epoch: false, .. })
     }
 
@@ -229,7 +229,6 @@ fn fits(unit: Unit, at: &Place) -> Result<Unit, RecordingError> {
         unit: unit.symbol,
         channel: "time_s".to_owned(),
         expected: "s".to_owned(),
-        hint: String::new(),
     })
 }
 

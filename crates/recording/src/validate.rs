@@ -6,6 +6,7 @@ use crate::{Known, Place, RecordingError};
 use headland_trace::names;
 use headland_units::stem;
 use ron::extensions::Extensions;
+use std::cmp::Ordering;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -30,7 +31,7 @@ impl Described {
         })?;
         let text = String::from_utf8(bytes).map_err(|error| {
             let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-            let line = before.iter().filter(|byte| **byte == b'\n').count() + 1;
+            let line = before.split(|byte| *byte == b'\n').count();
             RecordingError::Encoding { at: Place::new(path, line, 0), encoding: "UTF-8" }
         })?;
         if text.trim().is_empty() {
@@ -147,7 +148,7 @@ impl Described {
                 return Err(RecordingError::Twice { at, what: "the run", name: run.id.clone() });
             }
             for (part, segment) in run.segments.iter().enumerate() {
-                if !(segment.from_s < segment.to_s) {
+                if segment.from_s.partial_cmp(&segment.to_s) != Some(Ordering::Less) {
                     let at = self.at(&format!("runs[{index}].segments[{part}].to_s"));
                     let expected = format!("more than from_s, {}", segment.from_s);
                     return Err(value_error(at, "to_s", segment.to_s, &expected));
@@ -171,13 +172,13 @@ impl Described {
         let Some(split) = split else { return Ok(()) };
         for (field, value) in [("speed_jump_m_s", split.speed_jump_m_s), ("gap_s", split.gap_s)] {
             if let Some(value) = value
-                && !(value > 0.0)
+                && (value.is_nan() || value <= 0.0)
             {
                 return Err(value_error(self.at(&format!("{path}.{field}")), field, value, "more than 0"));
             }
         }
         match split.shortest_s {
-            Some(value) if !(value >= 0.0) => {
+            Some(value) if value.is_nan() || value < 0.0 => {
                 Err(value_error(self.at(&format!("{path}.shortest_s")), "shortest_s", value, "0 or more"))
             }
             _ => Ok(()),

@@ -188,15 +188,10 @@ mod tests {
     use super::*;
     use headland_trace::Origin;
 
-    fn drive(name: &str, value: impl Fn(usize) -> f64) -> Trace {
-        let mut trace = Trace::new((0..600).map(|row| row as f64 * 0.1).collect()).unwrap();
-        trace
-            .push(
-                "speed_m_s",
-                (0..600).map(|row| 5.0 + (row as f64 * 0.05).sin()).collect(),
-                Origin::Measured,
-            )
-            .unwrap();
+    fn drive(name: &str, value: impl Fn(u32) -> f64) -> Trace {
+        let mut trace = Trace::new((0..600).map(|row| f64::from(row) * 0.1).collect()).unwrap();
+        let speed = (0..600).map(|row| 5.0 + (f64::from(row) * 0.05).sin()).collect();
+        trace.push("speed_m_s", speed, Origin::Measured).unwrap();
         trace.push(name, (0..600).map(value).collect(), Origin::Measured).unwrap();
         trace
     }
@@ -211,9 +206,9 @@ mod tests {
     #[test]
     fn a_lively_channel_that_rests_is_stuck() {
         let torque =
-            |row: usize| if (200..300).contains(&row) { 40.0 } else { (row as f64 * 0.3).sin() * 50.0 };
+            |row: u32| if (200..300).contains(&row) { 40.0 } else { (f64::from(row) * 0.3).sin() * 50.0 };
         assert_eq!(seen(&drive("force_n", torque)), [(NoticeKind::Stuck, 1, Some(20.0))]);
-        assert_eq!(seen(&drive("force_n", |row| (row as f64 * 0.3).sin() * 50.0)), []);
+        assert_eq!(seen(&drive("force_n", |row| (f64::from(row) * 0.3).sin() * 50.0)), []);
     }
 
     #[test]
@@ -224,19 +219,19 @@ mod tests {
 
     #[test]
     fn a_single_sample_far_away_is_a_spike() {
-        let value = |row: usize| if row == 77 { 900.0 } else { (row as f64 * 0.3).sin() * 50.0 };
+        let value = |row: u32| if row == 77 { 900.0 } else { (f64::from(row) * 0.3).sin() * 50.0 };
         assert_eq!(seen(&drive("force_n", value)), [(NoticeKind::Spike, 1, Some(7.7))]);
     }
 
     #[test]
     fn missing_values_are_counted() {
-        let value = |row: usize| if row % 100 == 50 { f64::NAN } else { (row as f64 * 0.3).sin() };
+        let value = |row: u32| if row % 100 == 50 { f64::NAN } else { (f64::from(row) * 0.3).sin() };
         assert_eq!(seen(&drive("force_n", value)), [(NoticeKind::Nan, 6, Some(5.0))]);
     }
 
     #[test]
     fn a_charge_in_steps_is_coarse() {
-        let value = |row: usize| 0.9 - (row / 20) as f64 * 0.0002;
+        let value = |row: u32| 0.9 - f64::from(row / 20) * 0.0002;
         assert_eq!(seen(&drive("state_of_charge", value)), [(NoticeKind::Coarse, 29, None)]);
     }
 

@@ -72,7 +72,7 @@ pub(super) fn torque_against_speed(trace: &Trace, run: &str, notices: &mut Vec<N
     if !(step > 0.0 && step <= 0.5 * LEAST_LAG_S) {
         return;
     }
-    let rows = |seconds: f64| (seconds / step).round().max(1.0) as usize;
+    let rows = |seconds: f64| rows_in(seconds, step);
     let half = rows(SLOPE_S);
     let slope: Vec<f64> = (0..speed.len())
         .map(|row| match (row.checked_sub(half), speed.get(row + half)) {
@@ -120,7 +120,7 @@ pub(super) fn torque_against_speed(trace: &Trace, run: &str, notices: &mut Vec<N
 
 /// Tells a delay between a torque and its acceleration. Both are shifted by whole rows.
 fn lag(name: &str, torque: &[f64], slope: &[f64], step: f64, run: &str, notices: &mut Vec<Notice>) {
-    let most = ((MOST_LAG_S / step).round() as usize).min(torque.len() / 4);
+    let most = rows_in(MOST_LAG_S, step).min(torque.len() / 4);
     let shifted = |rows: usize, torque_late: bool| {
         let end = torque.len() - rows;
         if torque_late {
@@ -149,6 +149,12 @@ fn lag(name: &str, torque: &[f64], slope: &[f64], step: f64, run: &str, notices:
         );
         notices.push(Notice::new(run, NoticeKind::Lag, text).channel(name));
     }
+}
+
+/// How many rows of `step` seconds make up a time; at least one.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive whole number")]
+fn rows_in(seconds: f64, step: f64) -> usize {
+    (seconds / step).round().max(1.0) as usize
 }
 
 /// Pearson's correlation over the pairs of which both are there; NaN where one does not vary.

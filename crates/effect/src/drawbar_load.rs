@@ -1,0 +1,109 @@
+//! An implement or trailer that was not recorded.
+//!
+//! F = D₀ + D₁ |v| + D₂ v²        from one time to another
+//!
+//! Source: draft as a polynomial of speed, ASABE D497 clause 4 (there for each width and depth of an implement).
+//! Leaves out slope and inertia of a trailer, which are `mass`, and the weight that an implement transfers.
+//! Fingerprint: a force against the motion that steps in and out in time, as when an implement is lowered and lifted.
+
+use crate::series::refuse;
+use headland_plugin::{Action, Bound, Card, Effect, Plugin, Refusal, Situation, parameter};
+use serde::Deserialize;
+use std::path::Path;
+
+/// Draft by speed within an interval.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DrawbarLoad {
+    force_n: f64,
+    #[serde(default)]
+    linear_n_s_m: f64,
+    #[serde(default)]
+    quadratic_n_s2_m2: f64,
+    #[serde(default = "always_before")]
+    from_s: f64,
+    #[serde(default = "always_after")]
+    to_s: f64,
+}
+
+const fn always_before() -> f64 {
+    f64::NEG_INFINITY
+}
+
+const fn always_after() -> f64 {
+    f64::INFINITY
+}
+
+impl Plugin for DrawbarLoad {
+    const CARD: Card = Card {
+        name: "drawbar_load",
+        about: "an implement or trailer that was not recorded",
+        equation: "F = D₀ + D₁ |v| + D₂ v² from one time to another",
+        source: "draft as a polynomial of speed, ASABE D497 clause 4",
+        validity: "one depth, width and soil; leaves out slope and inertia of a trailer",
+        parameters: &[
+            parameter("force_n", "N", "constant part, backward, D₀")
+                .must_be(Bound::NotNegative)
+                .usually(0.0, 150_000.0),
+            parameter("linear_n_s_m", "N s/m", "part in proportion to speed, D₁")
+                .usually(-2000.0, 20_000.0)
+                .or(0.0),
+            parameter("quadratic_n_s2_m2", "N s²/m²", "part in proportion to the square of speed, D₂")
+                .usually(-500.0, 10_000.0)
+                .or(0.0),
+            parameter("from_s", "s", "time since the start of the run at which it begins")
+                .usually(0.0, 1e5)
+                .or(always_before()),
+            parameter("to_s", "s", "time at which it ends").usually(0.0, 1e5).or(always_after()),
+        ],
+    };
+
+    fn settle(&mut self, _: &Path) -> Result<(), Refusal> {
+        if self.to_s > self.from_s {
+            Ok(())
+        } else {
+            Err(refuse(
+                "to_s",
+                &self.to_s.to_string(),
+                &format!("more than `from_s`, which is {}", self.from_s),
+            ))
+        }
+    }
+}
+
+impl Effect for DrawbarLoad {
+    fn act(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Action {
+        let v = at.speed_m_s.abs();
+        let draft_n = self.force_n + v * (self.linear_n_s_m + v * self.quadratic_n_s2_m2);
+        let pulls = (self.from_s..self.to_s).contains(&at.time_s);
+        Action { resistance_n: if pulls { draft_n } else { 0.0 }, ..Action::default() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{act, at_10_m_s, build, same};
+
+    /// 500 + 20 · 10 + 3 · 100 = 1000 N.
+    #[test]
+    fn draft_is_a_polynomial_of_speed() {
+        let draft = "(force_n: 500.0, linear_n_s_m: 20.0, quadratic_n_s2_m2: 3.0)";
+        assert!(same(act::<DrawbarLoad>(draft, &at_10_m_s()).resistance_n, 1000.0));
+    }
+
+    /// The situation is at 50 s.
+    #[test]
+    fn it_pulls_between_its_times_alone() {
+        let pull = |interval: &str| {
+            act::<DrawbarLoad>(&format!("(force_n: 500.0, {interval})"), &at_10_m_s()).resistance_n
+        };
+        assert_eq!((pull("from_s: 40.0"), pull("from_s: 51.0"), pull("to_s: 50.0")), (500.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn an_interval_that_ends_before_it_begins_is_refused() {
+        let message = build::<DrawbarLoad>("(force_n: 500.0, from_s: 4.0, to_s: 3.0)").unwrap_err();
+        assert!(message.contains("`to_s` is 3, expected more than `from_s`, which is 4"), "{message}");
+    }
+}

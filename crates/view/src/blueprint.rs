@@ -3,17 +3,19 @@
 use crate::entity::{self, Who};
 use crate::groups::Group;
 use crate::lanes::Lane;
+use crate::path::Pose;
 use crate::plots::{COMPARED, residual};
 use crate::recorder::{Recorder, TIMELINE, encode};
 use crate::{Scene, ViewError};
 use rerun::external::re_log_types::{BlueprintActivationCommand, StoreKind};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
-    ContainerBlueprint, EyeControls3D, LineGrid3D, PanelBlueprint, PlotLegend, TimePanelBlueprint, ViewBlueprint,
-    ViewContents, ViewportBlueprint,
+    Background, ContainerBlueprint, EyeControls3D, LineGrid3D, PanelBlueprint, PlotLegend, TimeAxis,
+    TimePanelBlueprint, ViewBlueprint, ViewContents, ViewportBlueprint,
 };
 use rerun::external::re_sdk_types::blueprint::components::{
-    ContainerKind, Corner2D, LoopMode, PanelState, PlayState,
+    BackgroundKind, ContainerKind, Corner2D, LoopMode, PanelState, PlayState,
 };
+use rerun::datatypes::{TimeInt, TimeRange, TimeRangeBoundary};
 use rerun::log::LogMsg;
 use rerun::{ApplicationId, AsComponents, EntityPath, RecordingStreamBuilder};
 
@@ -26,7 +28,7 @@ pub(crate) fn messages(
 ) -> Result<Vec<LogMsg>, ViewError> {
     let to = Recorder::new(RecordingStreamBuilder::new(application.clone()).blueprint())?;
     to.stream().set_time_sequence("blueprint", 0);
-    let mut layout = Layout { to, nodes: 0 };
+    let mut layout = Layout { to, nodes: 0, times_s: times_s(lanes) };
     let space = layout.space(scene, lanes)?;
     let text = layout.view("TextDocument", "About", &[entity::summary()], &[])?;
     let left = layout.split(ContainerKind::Vertical, "", &[space, text], &[6.0, 1.0])?;
@@ -44,6 +46,27 @@ pub(crate) fn messages(
     Ok(messages)
 }
 
+/// Behind everything in space: dark enough for light labels.
+const SKY: [u8; 3] = [34, 44, 56];
+/// How much longer than the runs the plots are, so that their legend hides no line.
+const LEGEND: f64 = 0.3;
+
+/// First and last time of all runs [s], the last one with room for the legend.
+fn times_s(lanes: &[Lane]) -> [f64; 2] {
+    let runs = || lanes.iter().flat_map(|lane| [Some(lane.run), lane.recording]).flatten();
+    let first = runs().filter_map(|run| run.trace.time_s().first()).copied().fold(f64::INFINITY, f64::min);
+    let last = runs().filter_map(|run| run.trace.time_s().last()).copied().fold(f64::NEG_INFINITY, f64::max);
+    [first, last + LEGEND * (last - first)]
+}
+
+/// The direction from the first place to the last one; that of the start where these are close to each other.
+fn main_heading_rad(poses: &[Pose], start_rad: f64) -> f64 {
+    let Some((first, last)) = poses.first().zip(poses.last()) else { return start_rad };
+    let (east_m, north_m) = (last.at[0] - first.at[0], last.at[1] - first.at[1]);
+    let travelled_m = (last.travelled_m - first.travelled_m).abs();
+    if east_m.hypot(north_m) > 0.5 * travelled_m && travelled_m > 0.0 { east_m.atan2(north_m) } else { start_rad }
+}
+
 /// A view or a container.
 #[derive(Clone)]
 struct Node {
@@ -54,6 +77,7 @@ struct Node {
 struct Layout {
     to: Recorder,
     nodes: u32,
+    times_s: [f64; 2],
 }
 
 impl Layout {
@@ -115,10 +139,10 @@ impl Layout {
         else {
             return Err(ViewError::NoRun);
         };
-        let (sine, cosine) = pose.heading_rad.sin_cos();
+        let (sine, cosine) = main_heading_rad(&first.path.poses, pose.heading_rad).sin_cos();
         let reach = scene.vehicle.length_m.max(scene.vehicle.height_m);
         // Ahead and to the right of the vehicle, in its own lengths.
-        let (ahead, right, up) = (0.55 * reach, 2.1 * reach, 0.95 * reach);
+        let (ahead, right, up) = (0.5 * reach, 2.2 * reach, 1.0 * reach);
         let eye = [
             pose.at[0] + ahead * sine + right * cosine,
             pose.at[1] + ahead * cosine - right * sine,
@@ -129,9 +153,12 @@ impl Layout {
             .with_position(crate::mesh::single(eye))
             .with_look_target(crate::mesh::single(target))
             .with_eye_up([0.0, 0.0, 1.0])
-            .with_tracking_entity(entity::vehicle(&first.run.id, Who::Modelled).to_string());
+            .with_tracking_entity(entity::reach(&first.run.id).to_string());
         let grid = LineGrid3D::new().with_visible(false);
-        self.view("3D", "Vehicle", &[entity::world()], &[("EyeControls3D", &eye), ("LineGrid3D", &grid)])
+        let sky = Background::new(BackgroundKind::SolidColor).with_color(SKY);
+        let properties: [(&str, &dyn AsComponents); 3] =
+            [("EyeControls3D", &eye), ("LineGrid3D", &grid), ("Background", &sky)];
+        self.view("3D", "Vehicle", &[entity::world()], &properties)
     }
 
     /// The plots of one run, or a tab for each run.
@@ -192,9 +219,14 @@ impl Layout {
         self.split(ContainerKind::Vertical, name, &parts, &shares)
     }
 
+    #[expect(clippy::cast_possible_truncation, reason = "nanoseconds of three centuries fit")]
     fn plot(&mut self, title: &str, lines: &[EntityPath]) -> Result<Node, ViewError> {
         let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
-        self.view("TimeSeries", title, lines, &[("PlotLegend", &legend)])
+        let [from, to] = self.times_s.map(|time_s| {
+            TimeRangeBoundary::Absolute(TimeInt((time_s * 1e9).round() as i64))
+        });
+        let axis = TimeAxis::new().with_view_range(TimeRange { start: from, end: to });
+        self.view("TimeSeries", title, lines, &[("PlotLegend", &legend), ("TimeAxis", &axis)])
     }
 
     /// What lies around the views.
@@ -211,5 +243,24 @@ impl Layout {
             .with_play_state(PlayState::Playing)
             .with_loop_mode(LoopMode::All);
         self.log("time_panel", &time)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    fn pose(travelled_m: f64, east_m: f64, north_m: f64) -> Pose {
+        Pose { time_s: 0.0, travelled_m, at: [east_m, north_m, 0.0], heading_rad: 1.0, pitch_rad: 0.0 }
+    }
+
+    #[test]
+    fn the_eye_looks_across_the_way_as_a_whole_but_for_a_round() {
+        let way = [pose(0.0, 0.0, 0.0), pose(80.0, 60.0, 0.0)];
+        assert_eq!(main_heading_rad(&way, 1.0), FRAC_PI_2);
+        let round = [pose(0.0, 0.0, 0.0), pose(80.0, 6.0, 0.0)];
+        assert_eq!(main_heading_rad(&round, 1.0), 1.0);
+        assert_eq!(main_heading_rad(&[pose(0.0, 0.0, 0.0)], 1.0), 1.0);
     }
 }

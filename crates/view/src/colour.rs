@@ -23,6 +23,16 @@ pub(crate) const MEASURED: Colour = SKY_BLUE;
 /// The difference of the two.
 pub(crate) const RESIDUAL: Colour = GREEN;
 
+/// The line of one of several runs, of which each has its own.
+pub(crate) fn of_run(index: usize, count: usize) -> Colour {
+    if count > 1 { SERIES[index % SERIES.len()] } else { MODELLED }
+}
+
+/// The line of the recording that belongs to it.
+pub(crate) fn of_recording(index: usize, count: usize) -> Colour {
+    if count > 1 { pale(of_run(index, count)) } else { MEASURED }
+}
+
 /// Halfway to white.
 pub(crate) fn pale(colour: Colour) -> Colour {
     colour.map(|part| 128 + part / 2)

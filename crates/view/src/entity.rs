@@ -26,6 +26,11 @@ pub(crate) fn vehicle(run: &str, who: Who) -> EntityPath {
     entity(&["world", "runs", run, who.name(), "vehicle"])
 }
 
+/// What has to be in sight around a run's vehicle.
+pub(crate) fn reach(run: &str) -> EntityPath {
+    part(&vehicle(run, Who::Modelled), "reach")
+}
+
 /// A part of something.
 pub(crate) fn part(whole: &EntityPath, part: &str) -> EntityPath {
     whole.join(&entity(&[part]))

@@ -45,16 +45,16 @@ pub(crate) fn messages(scene: &Scene) -> Result<Vec<LogMsg>, ViewError> {
     let stripe_m = surroundings::draw(&to, scene, &lanes, shift)?;
     let newton_per_m = forces::newton_per_m(scene);
     for lane in &lanes {
-        let Lane { run, path, measured, .. } = lane;
+        let Lane { run, path, measured, colour, pale, .. } = lane;
         let name = |who: Who| match (scene.runs.len(), measured.is_some()) {
             (1, false) => String::new(),
             (1, true) => who.name().to_owned(),
             (_, false) => run.id.clone(),
             (_, true) => format!("{} {}", run.id, who.name()),
         };
-        vehicle::drive(&to, &run.id, Who::Modelled, path, &scene.vehicle, &name(Who::Modelled))?;
+        vehicle::drive(&to, &run.id, Who::Modelled, path, &scene.vehicle, (&name(Who::Modelled), *colour))?;
         if let Some(measured) = measured {
-            vehicle::drive(&to, &run.id, Who::Measured, measured, &scene.vehicle, &name(Who::Measured))?;
+            vehicle::drive(&to, &run.id, Who::Measured, measured, &scene.vehicle, (&name(Who::Measured), *pale))?;
         }
         forces::draw(&to, scene, run, newton_per_m)?;
         plots::draw(&to, scene, &groups, lane)?;

@@ -12,7 +12,7 @@ use headland_trace::Run;
 use rerun::{Arrows3D, Color};
 
 /// The longest arrow, in lengths of the vehicle.
-const LONGEST: f64 = 1.0;
+const LONGEST: f64 = 1.2;
 /// A force below this share of the largest one is drawn without an arrow.
 const LEAST: f64 = 0.002;
 
@@ -47,7 +47,7 @@ fn arrow(body: &Body, axis: Axis, (index, count): (usize, usize), length_m: f64)
         Axis::Up => [0.0, 0.0, body.height_m - vector[2].min(0.0)],
         Axis::Forward | Axis::Backward => {
             let end = if vector[0] < 0.0 { -0.5 } else { 0.5 };
-            [end * body.length_m, 0.0, body.height_m * (0.12 + 0.76 * share)]
+            [end * body.length_m, 0.0, body.height_m * (0.05 + 1.05 * share)]
         }
     };
     (origin, vector)
@@ -91,7 +91,7 @@ pub(crate) fn draw(to: &Recorder, scene: &Scene, run: &Run, newton_per_m: f64) -
 
 #[expect(clippy::cast_possible_truncation, reason = "pictures are drawn in single precision")]
 fn radius_m(body: &Body) -> f32 {
-    (0.02 * body.height_m) as f32
+    (0.03 * body.height_m) as f32
 }
 
 #[cfg(test)]
@@ -107,7 +107,7 @@ mod tests {
         let other = run("r2", &[(position.0, &position.1), ("drag_n", &[-5900.0, 10.0])]);
         let runs = [one, other];
         let scene = Scene { forces: &forces, ..scene(&runs, &[]) };
-        assert_eq!(newton_per_m(&scene), 1000.0, "5900 N over 6 m");
+        assert_eq!(newton_per_m(&scene), 1000.0, "5900 N over 7.2 m");
         assert_eq!(newton_per_m(&Scene { forces: &[], ..scene }), 1.0);
     }
 

@@ -1,7 +1,8 @@
 //! Which channels share a plot.
 
-use crate::colour::{Colour, MODELLED, SERIES};
+use crate::colour::{Colour, SERIES};
 use crate::Scene;
+use crate::plots::COMPARED;
 use headland_units::{stem, unit_of_name};
 
 /// Channels of one unit.
@@ -78,13 +79,10 @@ fn capital(words: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// The colour of a channel, the same in every plot, run and arrow.
+/// The colour of a channel, the same in every plot, run and arrow; but for the speed, which is the colour of its run.
 pub(crate) fn colour(groups: &[Group], channel: &str) -> Colour {
-    if channel == "speed_m_s" {
-        return MODELLED;
-    }
     let place = groups.iter().find_map(|group| {
-        group.channels.iter().filter(|known| *known != "speed_m_s").position(|known| known == channel)
+        group.channels.iter().filter(|known| *known != COMPARED).position(|known| known == channel)
     });
     SERIES[place.unwrap_or(0) % SERIES.len()]
 }

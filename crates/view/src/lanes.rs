@@ -1,5 +1,6 @@
 //! Where each run's path lies among the others.
 
+use crate::colour::{self, Colour};
 use crate::path::{Path, Pose, path};
 use crate::{Scene, ViewError};
 use headland_trace::Run;
@@ -12,6 +13,10 @@ pub(crate) struct Lane<'a> {
     pub path: Path,
     /// The recording's path, where it has one.
     pub measured: Option<Path>,
+    /// Colour of the run's vehicle, path and speed.
+    pub colour: Colour,
+    /// The same of its recording.
+    pub pale: Colour,
 }
 
 /// All runs of a scene, and by how much they were moved so that the first starts at the origin.
@@ -39,7 +44,9 @@ pub(crate) fn lanes<'a>(scene: &Scene<'a>) -> Result<(Vec<Lane<'a>>, [f64; 3]), 
             }
             south_m += LANE * scene.vehicle.width_m;
         }
-        lanes.push(Lane { run, recording, path: path_of_run, measured });
+        let (index, count) = (lanes.len(), scene.runs.len());
+        let (colour, pale) = (colour::of_run(index, count), colour::of_recording(index, count));
+        lanes.push(Lane { run, recording, path: path_of_run, measured, colour, pale });
     }
     let first = lanes.iter().find_map(|lane| lane.path.poses.first());
     let shift = first.map_or([0.0; 3], |pose| pose.at.map(|part| -part));
@@ -53,7 +60,7 @@ pub(crate) fn lanes<'a>(scene: &Scene<'a>) -> Result<(Vec<Lane<'a>>, [f64; 3]), 
 }
 
 /// From one lane to the next, in widths of the vehicle.
-const LANE: f64 = 5.0;
+pub(crate) const LANE: f64 = 4.0;
 
 /// Lays `path`, which knows only distances, along `guide`, from where the guide was when the path began.
 fn follow(path: &mut Path, guide: &Path) {
@@ -91,7 +98,7 @@ mod tests {
         let (lanes, _) = lanes(&scene(&runs, &[])).unwrap();
         let at = |lane: usize, pose: usize| lanes[lane].path.poses[pose].at;
         assert_eq!([at(0, 0), at(0, 1)], [[0.0; 3], [10.0, 0.0, 0.0]]);
-        assert_eq!([at(1, 0), at(1, 1)], [[0.0, -5.0 * BODY.width_m, 0.0], [4.0, -5.0 * BODY.width_m, 0.0]]);
+        assert_eq!([at(1, 0), at(1, 1)], [[0.0, -LANE * BODY.width_m, 0.0], [4.0, -LANE * BODY.width_m, 0.0]]);
     }
 
     /// Large coordinates would lose their centimetres in single precision.

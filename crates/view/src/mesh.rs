@@ -66,6 +66,13 @@ impl Mesh {
         }
     }
 
+    /// Gives every face the colour that its own one turns into.
+    pub(crate) fn recolour(&mut self, into: impl Fn(Colour) -> Colour) {
+        for colour in &mut self.colours {
+            *colour = into(*colour);
+        }
+    }
+
     fn next(&self) -> u32 {
         u32::try_from(self.positions.len()).unwrap_or(u32::MAX)
     }

@@ -1,6 +1,6 @@
 //! Channels as lines over time.
 
-use crate::colour::{Colour, MEASURED, RESIDUAL, pale};
+use crate::colour::{Colour, RESIDUAL, pale};
 use crate::entity::{self, Who};
 use crate::groups::{self, Group, words};
 use crate::lanes::Lane;
@@ -17,6 +17,9 @@ pub(crate) const COMPARED: &str = "speed_m_s";
 pub(crate) fn draw(to: &Recorder, scene: &Scene, groups: &[Group], lane: &Lane) -> Result<(), ViewError> {
     let id = &lane.run.id;
     let force = |name: &str| scene.forces.iter().find(|force| force.channel == name).map(|force| force.label);
+    let of_run = |channel: &str, name: String| {
+        if channel == COMPARED && scene.runs.len() > 1 { format!("{id}: {name}") } else { name }
+    };
     for channel in lane.run.trace.channels() {
         let words = force(&channel.name).map_or_else(|| words(&channel.name), str::to_owned);
         let driven = channel.origin == Origin::Driven;
@@ -26,7 +29,8 @@ pub(crate) fn draw(to: &Recorder, scene: &Scene, groups: &[Group], lane: &Lane) 
             (false, true) => format!("{words}, modelled"),
             (false, false) => words,
         };
-        let colour = groups::colour(groups, &channel.name);
+        let name = of_run(&channel.name, name);
+        let colour = if channel.name == COMPARED { lane.colour } else { groups::colour(groups, &channel.name) };
         let at = entity::channel(id, &channel.name, Who::Modelled);
         line(to, &at, &name, colour, 2.0, lane.run.trace.time_s(), &channel.values)?;
     }
@@ -37,9 +41,9 @@ pub(crate) fn draw(to: &Recorder, scene: &Scene, groups: &[Group], lane: &Lane) 
         }
         let words = force(&channel.name).map_or_else(|| words(&channel.name), str::to_owned);
         let colour = groups::colour(groups, &channel.name);
-        let colour = if channel.name == COMPARED { MEASURED } else { pale(colour) };
+        let colour = if channel.name == COMPARED { lane.pale } else { pale(colour) };
         let at = entity::channel(id, &channel.name, Who::Measured);
-        let name = format!("{words}, measured");
+        let name = of_run(&channel.name, format!("{words}, measured"));
         line(to, &at, &name, colour, 1.2, recording.trace.time_s(), &channel.values)?;
     }
     if let Some(residual) = residual(lane.run, recording) {

@@ -18,7 +18,7 @@ pub(crate) struct Strip {
     pub mesh: Mesh,
     /// Length of each of its light and dark pieces [m].
     pub stripe_m: f64,
-    /// Places beside the strip, and how far along the path they are [m].
+    /// Places on the right edge of the strip, and how far along the path they are [m].
     pub marks: Vec<(Point, f64)>,
 }
 
@@ -56,7 +56,7 @@ pub(crate) fn strip(path: &Path, width_m: f64, margin_m: f64) -> Strip {
     let mut marks = Vec::new();
     let mut mark = 0.0;
     while mark <= inner_m {
-        marks.push((edges(mark + margin_m)[1], mark));
+        marks.push((edges(mark + margin_m)[0], mark));
         mark += spacing_m;
     }
     Strip { mesh, stripe_m, marks }

@@ -17,7 +17,7 @@ pub(crate) fn summary(scene: &Scene, newton_per_m: f64, stripe_m: Option<f64>) -
         [] => Ok(()),
     };
     if scene.runs.iter().any(|run| scene.measured.iter().any(|measured| measured.id == run.id)) {
-        text.push_str("Orange: modelled. Blue, transparent: measured.\n");
+        text.push_str("The transparent vehicle and the pale lines are measured.\n");
     }
     if !scene.forces.is_empty() {
         let _ = writeln!(text, "1 m of arrow is {}.", words(newton_per_m));

@@ -2,7 +2,7 @@
 
 use crate::ViewError;
 use crate::entity;
-use crate::lanes::Lane;
+use crate::lanes::{LANE, Lane};
 use crate::mesh::single;
 use crate::recorder::Recorder;
 use crate::scene::Scene;
@@ -27,7 +27,7 @@ pub(crate) fn draw(
     let mut stripe_m = None;
     for (layer, lane) in lanes.iter().enumerate() {
         let body = &scene.vehicle;
-        let mut strip = strip(&lane.path, 2.5 * body.width_m, 3.0 * body.length_m);
+        let mut strip = strip(&lane.path, LANE * body.width_m, 3.0 * body.length_m);
         for position in &mut strip.mesh.positions {
             position[2] -= single([0.0, 0.0, LAYER_M * (layer + 1) as f64])[2];
         }

@@ -1,8 +1,8 @@
 //! A vehicle that moves.
 
 use crate::ViewError;
-use crate::colour::{MEASURED, pale};
-use crate::entity::{Who, line, part, vehicle};
+use crate::colour::{Colour, MODELLED, pale};
+use crate::entity::{self, Who, line, part, vehicle};
 use crate::mesh::{Mesh, single};
 use crate::path::{Path, Pose};
 use crate::recorder::Recorder;
@@ -13,11 +13,20 @@ use rerun::{Angle, Color, LineStrips3D, Mesh3D, Points3D, Quaternion, Rgba32, Ro
 /// How much of what lies behind a recorded vehicle it hides, out of 255.
 const GHOST: u8 = 110;
 
+/// How far around the vehicle's middle there has to be something to see, in its lengths.
+const REACH: f64 = 1.55;
+
 /// Turns what looks along x to where the pose looks: q = q_z(π/2 − heading) q_y(−pitch), as x, y, z, w.
 fn turn(pose: &Pose) -> [f64; 4] {
     let (sine_z, cosine_z) = ((std::f64::consts::FRAC_PI_2 - pose.heading_rad) / 2.0).sin_cos();
     let (sine_y, cosine_y) = (-pose.pitch_rad / 2.0).sin_cos();
     [-sine_z * sine_y, cosine_z * sine_y, sine_z * cosine_y, cosine_z * cosine_y]
+}
+
+/// A colour as light as a part of the vehicle, or half as dark.
+fn tinted(colour: Colour, [red, green, blue]: Colour) -> Colour {
+    let light = (u16::from(red) + u16::from(green) + u16::from(blue)) / 6 + 127;
+    colour.map(|part| u8::try_from(u16::from(part) * light / 255).unwrap_or(u8::MAX))
 }
 
 /// How far a wheel has turned [rad], kept within one turn.
@@ -44,7 +53,7 @@ pub(crate) fn drive(
     who: Who,
     path: &Path,
     body: &Body,
-    name: &str,
+    (name, colour): (&str, Colour),
 ) -> Result<(), ViewError> {
     let base = vehicle(run, who);
     let times = || path.poses.iter().map(|pose| pose.time_s);
@@ -55,14 +64,10 @@ pub(crate) fn drive(
     to.rows(&base, times(), transforms.columns(each()))?;
     let look = |mut mesh: Mesh| {
         if who == Who::Modelled {
+            mesh.recolour(|part| if part == MODELLED { colour } else { part });
             return surface(&mesh);
         }
-        for colour in &mut mesh.colours {
-            let [red, green, blue] = *colour;
-            let grey = (u16::from(red) + u16::from(green) + u16::from(blue)) / 3;
-            let light = u8::try_from(grey / 2 + 127).unwrap_or(u8::MAX);
-            *colour = pale(MEASURED).map(|part| u8::try_from(u16::from(part) * u16::from(light) / 255).unwrap_or(part));
-        }
+        mesh.recolour(|part| tinted(pale(colour), part));
         surface(&mesh).with_albedo_factor(Rgba32::from_unmultiplied_rgba(255, 255, 255, GHOST))
     };
     to.fixed(&part(&base, "body"), &look(tractor::body(body)))?;
@@ -79,7 +84,6 @@ pub(crate) fn drive(
         to.rows(&wheel, times(), turns.columns(each()))?;
     }
     if !name.is_empty() {
-        let colour = if who == Who::Modelled { crate::colour::MODELLED } else { MEASURED };
         let above = [0.0, 0.0, body.height_m * if who == Who::Modelled { 1.2 } else { 1.4 }];
         let label = Points3D::new([single(above)])
             .with_radii([0.01])
@@ -87,7 +91,13 @@ pub(crate) fn drive(
             .with_labels([name]);
         to.fixed(&part(&base, "name"), &label)?;
     }
-    let [red, green, blue] = if who == Who::Modelled { crate::colour::MODELLED } else { MEASURED };
+    if who == Who::Modelled {
+        // The viewer's eye keeps one and a half times the radius of what it follows.
+        let reach_m = REACH * body.length_m.max(body.height_m);
+        let ends = [-reach_m, reach_m].map(|ahead| single([ahead, 0.0, body.height_m / 2.0]));
+        to.fixed(&entity::reach(run), &Points3D::new(ends).with_radii([1e-3]))?;
+    }
+    let [red, green, blue] = colour;
     let above_m = if who == Who::Modelled { 0.06 } else { 0.04 };
     let points = path.poses.iter().map(|pose| single([pose.at[0], pose.at[1], pose.at[2] + above_m]));
     let driven = LineStrips3D::new([points.collect::<Vec<_>>()])

@@ -156,6 +156,15 @@ mod tests {
         assert!((aligned.measured[2] - (0.1 + 2.0 * PI)).abs() < 1e-12);
     }
 
+    /// 0.1 rad measured and 6.2 rad modelled are 0.183185 apart, on the other side of north.
+    #[test]
+    fn a_heading_that_starts_across_north_is_near() {
+        let measured = trace(&[0.0, 1.0], "heading_rad", &[0.1, 0.2]);
+        let modelled = trace(&[0.0, 1.0], "heading_rad", &[6.2, 6.25]);
+        let errors = align(&measured, &modelled, "heading_rad").unwrap().errors();
+        assert!((errors[0] + 0.183_185).abs() < 1e-6, "{errors:?}");
+    }
+
     #[test]
     fn even_times_reach_from_the_first_pair_to_the_last() {
         let uneven = trace(&[0.0, 1.0, 4.0], "speed_m_s", &[0.0, 2.0, 8.0]);

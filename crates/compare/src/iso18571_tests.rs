@@ -112,3 +112,11 @@ fn what_cannot_be_rated_is_not() {
     holed[3] = f64::NAN;
     assert_eq!(iso18571(&bump(0), &holed), None);
 }
+
+/// Of 100 samples the warping reaches nine to either side: a spike is found there, and not at ten.
+#[test]
+fn warping_reaches_a_tenth_of_the_length_less_one_sample() {
+    let spike = |place: usize| (0..100).map(|at| f64::from(u8::from(at == place))).collect::<Vec<f64>>();
+    assert_eq!(magnitude(&spike(50), &spike(59)), 1.0);
+    assert_eq!(magnitude(&spike(50), &spike(60)), 0.0);
+}

@@ -158,6 +158,22 @@ mod tests {
         assert_eq!(metrics(&[1.0], &[]), Err(CompareError::Length { measured: 1, modelled: 0 }));
     }
 
+    /// e = 1, 2, 3, 4 has the variance 1.25 and counts as 2.4 samples: √(1.25 / 2.4) = 0.721688.
+    #[test]
+    fn errors_that_resemble_their_neighbours_leave_the_bias_less_certain() {
+        let found = metrics(&[0.0; 4], &[1.0, 2.0, 3.0, 4.0]).unwrap();
+        assert!((found.bias_standard_error - 0.721_688).abs() < 1e-6, "{found:?}");
+    }
+
+    #[test]
+    fn whiteness_is_tested_over_a_fifth_of_the_pairs_up_to_twenty() {
+        for (count, lags) in [(50_u32, 10), (500, 20)] {
+            let model: Vec<f64> = (0..count).map(|step| f64::from(step * step % 17)).collect();
+            let found = metrics(&vec![0.0; model.len()], &model).unwrap();
+            assert_eq!(found.ljung_box.unwrap().lags, lags);
+        }
+    }
+
     #[test]
     fn what_is_relative_to_nothing_is_not_given() {
         let flat = metrics(&[0.0, 0.0], &[1.0, 2.0]).unwrap();

@@ -33,6 +33,7 @@ fn a_limit_in_another_unit_is_converted() {
     assert!((read("speed_m_s nrmse < 3%").limit - 0.03).abs() < 1e-15);
     assert!((read("speed_m_s lag <= 200 ms").limit - 0.2).abs() < 1e-15);
     assert!((read("air_temperature_c bias < 9 °F").limit - 5.0).abs() < 1e-12);
+    assert!((read("course_deg bias < 0.1 rad").limit - 5.729_578).abs() < 1e-6);
     assert!((read("air_temperature_c bias < 2 K").limit - 2.0).abs() < 1e-12);
 }
 

@@ -109,3 +109,24 @@ fn strangers_are_refused() {
     let nothing = trace(1.0, 0, &[("speed_m_s", |t| t, Origin::Predicted)]);
     assert!(matches!(compare_traces("r1", &a, &nothing), Err(CompareError::NoOverlap { .. })));
 }
+
+/// A recorded power goes before the product of its factors, and a product is an input as soon as one factor is.
+#[test]
+fn a_product_is_driven_by_either_factor_and_yields_to_a_recorded_power() {
+    let factors = |origin| {
+        vec![
+            ("battery_voltage_v", (|_| 400.0) as Signal, Origin::Predicted),
+            ("battery_current_a", |_| 10.0, origin),
+        ]
+    };
+    let driven = trace(1.0, 5, &factors(Origin::Driven));
+    let comparison = compare_traces("r", &driven, &driven).unwrap();
+    assert!(comparison.total("battery_power_w").unwrap().driven);
+    let mut channels = factors(Origin::Predicted);
+    channels.push(("battery_power_w", |_| 4100.0, Origin::Predicted));
+    let recorded = trace(1.0, 5, &channels);
+    let comparison = compare_traces("r", &recorded, &recorded).unwrap();
+    let powers: Vec<f64> =
+        comparison.totals.iter().filter(|t| t.of == "battery_power_w").map(|t| t.measured).collect();
+    assert_eq!(powers, [16_400.0]);
+}

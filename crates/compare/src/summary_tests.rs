@@ -123,3 +123,29 @@ fn the_summary_is_a_document() {
     assert!(document["runs"][0]["channels"][0]["iso18571"].is_null());
     assert_eq!(serde_json::to_value(summarise(&[])).unwrap()["channels"], serde_json::json!([]));
 }
+
+/// The first model is exact and ends two samples early, the second is far too fast and ends one early; the third
+/// was given its speed.
+#[test]
+fn ratings_are_averaged_and_inputs_left_out() {
+    let ramp = |offset: f64| (0..30).map(|step| offset + f64::from(step)).collect::<Vec<f64>>();
+    let measured = trace(Origin::Measured, &[("speed_m_s", &ramp(0.0))]);
+    let against = |id: &str, model: &[f64], origin| {
+        compare_traces(id, &measured, &trace(origin, &[("speed_m_s", model)])).unwrap()
+    };
+    let runs = [
+        against("exact", &ramp(0.0)[..28], Origin::Predicted),
+        against("off", &ramp(1000.0)[..29], Origin::Predicted),
+        against("given", &ramp(500.0), Origin::Driven),
+    ];
+    let summary = summarise(&runs);
+    let speed = &summary.channels[0];
+    let off = runs[1].channels[0].iso18571.unwrap().overall;
+    assert!(off < 0.5 && (speed.iso18571.unwrap() - f64::midpoint(1.0, off)).abs() < 1e-12);
+    assert_eq!((speed.runs, speed.dropped.outside, speed.within_band), (2, 3, 1));
+    assert_eq!(summary.driven, ["speed_m_s"]);
+    // 27²/2 + 28²/2 m measured, and nothing of the run that was given its speed.
+    assert!((summary.totals[0].measured - 756.5).abs() < 1e-9, "{:?}", summary.totals);
+    let text = "speed_m_s total < 5 %".parse().unwrap();
+    assert_eq!(summary.meets(&text).unwrap().runs, 2);
+}

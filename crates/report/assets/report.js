@@ -98,25 +98,34 @@
   });
   const axisStyle = (t) => ({
     axisLabel: { color: t.quiet, fontSize: 11, hideOverlap: true, formatter: (value) => number(value, 6) },
-    axisLine: { show: true, lineStyle: { color: t.rule } },
+    axisLine: { show: true, onZero: false, lineStyle: { color: t.rule } },
     axisTick: { show: true, lineStyle: { color: t.rule } },
     splitLine: { show: true, lineStyle: { color: t.fine } },
     nameTextStyle: { color: t.quiet, fontSize: 12 },
   });
+  /** Given ends, moved out to round numbers where these are near: 600 and not 599.99. */
+  const ends = ({ from, to }) => {
+    if (from === undefined) return {};
+    const [low, high] = rounded(from, to);
+    const near = 0.02 * (to - from);
+    return { min: from - low <= near ? low : from, max: high - to <= near ? high : to };
+  };
   const across = (axis, t) => ({
-    type: "value", scale: true, name: titled(axis), nameLocation: "middle", nameGap: 26, min: axis.from, max: axis.to,
-    ...axisStyle(t), splitLine: { show: false },
+    type: "value", scale: true, name: titled(axis), nameLocation: "middle", nameGap: 26, ...ends(axis), ...axisStyle(t), splitLine: { show: false },
   });
   const upward = (t) => ({ type: "value", scale: true, splitNumber: 4, ...axisStyle(t) });
+  /** A line at zero, where there is something on both sides of it. */
+  const zero = ([low, high], t) =>
+    low < 0 && high > 0 ? [{ yAxis: 0, label: { show: false }, lineStyle: { color: t.quiet, type: "solid", width: 0.8, opacity: 0.7 } }] : [];
   /** The label of the vertical axis lies above it: read without turning one's head. */
-  const heading = (text, t) => ({ text, left: 0, top: 0, padding: 0, textStyle: { color: t.quiet, fontSize: 12, fontWeight: "normal" } });
+  const heading = (text, t) => ({ text, left: 0, top: 2, padding: 0, textStyle: { color: t.quiet, fontSize: 12, fontWeight: "normal" } });
   /** The legend, and the height of its lines when they are broken at `width`. */
-  const legend = (names, width, t) => {
-    if (names.length < 2) return [{ show: false, data: names }, 0];
+  const legend = (names, width, t, least = 2) => {
+    if (names.length < least) return [{ show: false, data: names }, 0];
     let lines = 1;
     let filled = 0;
     for (const name of names) {
-      const wide = Math.min(name.length * 6.4 + 44, width);
+      const wide = Math.min(name.length * 6.4 + 48, width);
       if (filled + wide > width) {
         lines += 1;
         filled = 0;
@@ -125,7 +134,7 @@
     }
     const many = lines > 5;
     const style = {
-      data: names, left: 0, right: 0, top: 20, itemGap: 12, itemWidth: 18, itemHeight: 9, padding: 0, align: "left",
+      data: names, left: 0, right: 0, top: 22, itemGap: 12, itemWidth: 22, itemHeight: 9, padding: 0, align: "left",
       type: many ? "scroll" : "plain", inactiveColor: t.rule, pageIconColor: t.quiet, pageTextStyle: { color: t.quiet },
       textStyle: { color: t.ink, fontSize: 12, width: width - 40, overflow: "truncate" },
     };
@@ -137,7 +146,7 @@
   };
   /** An area between two curves, as one shape for each piece without a gap. */
   const band = (name, x, low, high, colour) => ({
-    type: "custom", name, silent: true, clip: true, z: 1, progressive: 0, tooltip: { show: false },
+    type: "custom", name, silent: true, clip: true, z: 3, progressive: 0, tooltip: { show: false },
     itemStyle: { color: colour }, encode: { x: 0, y: [1, 2] }, dimensions: ["x", "low", "high"],
     data: x.map((at, index) => [at, low[index], high[index]]),
     renderItem: (params, api) => {
@@ -150,14 +159,14 @@
             ...piece.slice().reverse().map((index) => api.coord([x[index], high[index]])),
           ],
         },
-        style: { fill: colour, opacity: 0.22 },
+        style: { fill: colour, opacity: 0.2, stroke: colour, lineWidth: 0.8 },
       }));
       return { type: "group", children: shapes };
     },
   });
   const coloured = (colour, t, extra) => ({
     type: "continuous", min: colour.from, max: colour.from === colour.to ? colour.from + 1 : colour.to, orient: "horizontal",
-    left: "center", bottom: 0, itemWidth: 10, itemHeight: 150, calculable: false, inRange: { color: t.scale },
+    left: "center", bottom: 4, itemWidth: 10, itemHeight: 150, calculable: false, inRange: { color: t.scale },
     text: [`${number(colour.to, 3)}${unit(colour)}`, `${colour.label} ${number(colour.from, 3)}`],
     textStyle: { color: t.quiet, fontSize: 12 }, padding: 0, ...extra,
   });
@@ -173,8 +182,11 @@
     const colour = (index) => t.series[index % t.series.length];
     const names = spec.series.map((one) => one.name);
     const [key, keyHeight] = legend(names, size.width, t);
+    key.data = spec.series.map(({ name, line }) =>
+      spec.stacked ? { name, icon: "roundRect" } : line === "dots" ? { name, icon: "circle" } : { name, itemStyle: { opacity: 0 } });
     const bottom = spec.slider ? 76 : 44;
-    const grid = { left: size.narrow ? 48 : 58, right: 16, top: 26 + keyHeight, bottom };
+    const moments = spec.marks.some((one) => !one.level) ? 14 : 0;
+    const grid = { left: size.narrow ? 48 : 58, right: 16, top: 28 + keyHeight + moments, bottom };
     const [low, high] = range(spec.series.flatMap((one) => [spec.x.from ?? null, spec.x.to ?? null, ...one.x].filter((x) => x !== null)));
     const pixels = (size.width - grid.left - grid.right) / (high - low || 1);
     const series = [];
@@ -182,14 +194,14 @@
       // Colours begin again after the last; broken lines then keep the series apart.
       const again = index >= t.series.length ? "dashed" : "solid";
       const dots = one.line === "dots";
-      if (one.low) series.push(band(one.name, one.x, one.low, one.high, colour(index)));
       series.push({
-        type: dots ? "scatter" : "line", name: one.name, data: pairs(one.x, one.y), showSymbol: false, symbolSize: dots ? 4 : 6,
+        type: dots ? "scatter" : "line", name: one.name, data: pairs(one.x, one.y), symbol: dots ? "circle" : "none", symbolSize: 4,
         color: colour(index), connectNulls: false, z: 2, emphasis: { disabled: true }, stack: spec.stacked ? "sum" : undefined,
         areaStyle: spec.stacked ? { opacity: 0.7, color: colour(index) } : undefined,
-        lineStyle: { width: spec.stacked ? 0.6 : 1.6, type: one.line === "dashed" ? "dashed" : again, color: colour(index) },
+        lineStyle: { width: spec.stacked ? 0 : 1.6, type: one.line === "dashed" ? "dashed" : again, color: colour(index) },
         itemStyle: { color: colour(index) },
       });
+      if (one.low) series.push(band(one.name, one.x, one.low, one.high, colour(index)));
     });
     series.push({
       type: "line", data: [], silent: true, tooltip: { show: false },
@@ -205,10 +217,13 @@
       },
       markLine: {
         silent: true, symbol: "none", lineStyle: { color: t.quiet, type: "dotted", width: 1.4 },
-        data: spec.marks.map((one) => ({
+        data: [...zero(range(spec.series.flatMap((one) => one.y)), t), ...spec.marks.map((one) => ({
           [one.level ? "yAxis" : "xAxis"]: one.at,
-          label: { formatter: () => one.label, color: t.quiet, fontSize: 11, position: one.level ? "insideEndTop" : "insideEndTop", rotate: 0 },
-        })),
+          label: {
+            formatter: () => one.label, color: t.ink, fontSize: 11, position: one.level ? "insideEndTop" : "end", rotate: 0,
+            textBorderColor: t.ground, textBorderWidth: 3,
+          },
+        }))],
       },
     });
     return {
@@ -247,6 +262,8 @@
       symbolSize: one.x.length > 800 ? 4 : 7, itemStyle: { opacity: 0.75 }, progressive: 0,
       data: one.x.map((x, at) => [x, one.y[at], one.colour ? one.colour[at] : null]),
     }));
+    const line = zero(range(spec.clouds.flatMap((one) => one.y)), t);
+    series.push({ type: "line", data: [], silent: true, tooltip: { show: false }, markLine: { silent: true, symbol: "none", data: line } });
     const tinted = spec.clouds.flatMap((one, index) => (one.colour ? [index] : []));
     return {
       title: heading(titled(spec.y), t), legend: key, series, xAxis: across(spec.x, t), yAxis: upward(t),
@@ -307,15 +324,19 @@
         },
       });
     });
-    const wide = Math.floor(flat ? size.width * 0.34 : Math.max(48, (size.width - 70) / Math.max(1, spec.categories.length) - 6));
+    // Room for the names: measured roughly, broken where they are too long.
+    const longest = Math.max(0, ...spec.categories.map((name) => name.length)) * 6.8 + 4;
+    const room = flat ? size.width * 0.34 : Math.max(44, (size.width - 70) / Math.max(1, spec.categories.length) - 8);
+    const wide = Math.floor(Math.min(longest, room));
+    const lines = Math.min(4, Math.ceil(longest / room));
     const categories = {
       type: "category", data: spec.categories, inverse: flat, ...axisStyle(t), splitLine: { show: false }, axisTick: { show: false },
-      axisLabel: { color: t.ink, fontSize: 12, interval: flat ? 0 : "auto", width: wide, overflow: "break", hideOverlap: true },
+      axisLabel: { color: t.ink, fontSize: 12, interval: flat || spec.categories.length <= 12 ? 0 : "auto", width: wide, overflow: "break", lineHeight: 14, hideOverlap: spec.categories.length > 12 },
     };
     const values = { type: "value", ...axisStyle(t), splitNumber: size.narrow ? 3 : 5 };
     return {
       title: heading(titled(spec.axis), t), legend: key, series,
-      grid: { left: 4, right: flat ? 48 : 12, top: 30 + keyHeight, bottom: 6, outerBoundsMode: "same", outerBoundsContain: "axisLabel", containLabel: true },
+      grid: { left: flat ? wide + 12 : size.narrow ? 48 : 58, right: flat ? 40 : 12, top: 30 + keyHeight, bottom: flat ? 28 : 14 + 14 * lines },
       xAxis: flat ? values : categories, yAxis: flat ? categories : values,
       tooltip: {
         trigger: "axis", axisPointer: { type: "shadow" },
@@ -341,7 +362,7 @@
     return {
       series: [
         {
-          type: "sankey", left: 2, right: 2, top: 40, bottom: 12, nodeGap: 30, nodeWidth: 14, draggable: false, layoutIterations: 48,
+          type: "sankey", left: 2, right: 2, top: 40, bottom: 24, nodeGap: 36, nodeWidth: 14, draggable: false, layoutIterations: 48,
           emphasis: { focus: "adjacency" }, lineStyle: { color: "gradient", opacity: 0.35, curveness: 0.5 },
           label: { ...label, formatter: ({ name }) => `${name}\n${amount(Math.max(enters(name), leaves(name)))}` },
           data: spec.nodes.map((name, index) => {
@@ -367,6 +388,7 @@
   kinds.cumulative = (spec, t, size, chart) => {
     const names = spec.series.map((one) => one.name);
     const [key, keyHeight] = legend(names, size.width, t);
+    key.data = names.map((name) => ({ name, itemStyle: { opacity: 0 } }));
     // A value holds from its own place to the next one.
     const stepped = (x, y) => {
       const points = { x: [], y: [] };
@@ -383,16 +405,16 @@
     const series = spec.series.flatMap((one, index) => {
       const colour = t.series[index % t.series.length];
       const line = {
-        type: "line", name: one.name, data: one.x.length ? [[one.x[0], 0], ...pairs(one.x, one.y)] : [], step: "end", showSymbol: false, color: colour, z: 2,
+        type: "line", name: one.name, data: one.x.length ? [[one.x[0], 0], ...pairs(one.x, one.y)] : [], step: "end", symbol: "none", color: colour, z: 2,
         lineStyle: { width: 1.6, color: colour, type: index % 2 ? [7, 3] : "solid" }, emphasis: { disabled: true },
       };
       if (!one.low) return [line];
       const low = stepped(one.x, one.low);
       const high = stepped(one.x, one.high);
-      return [band(one.name, low.x, low.y, high.y, colour), line];
+      return [line, band(one.name, low.x, low.y, high.y, colour)];
     });
     return {
-      title: heading(titled(spec.y), t), legend: key, series, xAxis: across(spec.x, t), yAxis: { ...upward(t), min: 0, max: 1 },
+      title: heading(titled(spec.y), t), legend: key, series, xAxis: across(spec.x, t), yAxis: { ...upward(t), min: 0, max: 1, interval: 0.2 },
       grid: { left: size.narrow ? 48 : 58, right: 16, top: 26 + keyHeight, bottom: 44 },
       tooltip: {
         trigger: "axis", axisPointer: { type: "line", lineStyle: { color: t.quiet } },
@@ -414,7 +436,7 @@
 
   kinds.map = (spec, t, size) => {
     const names = spec.highlights.map((one) => one.label);
-    const [key, keyHeight] = legend(names.length ? ["path", ...names] : [], size.width, t);
+    const [key, keyHeight] = legend(names, size.width, t, 1);
     const grid = size.grid(keyHeight);
     const path = pieces(spec.east, spec.north);
     const place = (index) => [spec.east[index], spec.north[index]];
@@ -437,7 +459,7 @@
     const all = path.flat();
     const ends = all.length ? [["start", all[0], "circle", "left"], ["end", all.at(-1), "rect", "right"]] : [];
     const series = spec.highlights.map((one, index) => ({
-      type: "line", name: one.label, data: pairs(one.east, one.north), showSymbol: false, silent: true, z: 1, color: thick[index % 4],
+      type: "line", name: one.label, data: pairs(one.east, one.north), symbol: "none", silent: true, z: 1, color: thick[index % 4],
       lineStyle: { width: 13, opacity: 0.5, cap: "round", join: "round", color: thick[index % 4] }, tooltip: { show: false },
     }));
     series.push(
@@ -492,13 +514,16 @@
 
   kinds.heat = (spec, t, size) => {
     const data = spec.values.flatMap((values, y) => values.map((value, x) => [x, y, value]));
-    const cell = (size.width * 0.7) / Math.max(1, spec.columns.length);
+    const longest = (names) => Math.max(0, ...names.map((name) => name.length)) * 6.8 + 4;
+    const margin = Math.min(longest(spec.rows), size.width * 0.32);
+    const cell = (size.width - margin) / Math.max(1, spec.columns.length);
+    const turned = longest(spec.columns) > cell;
     const style = { type: "category", ...axisStyle(t), splitLine: { show: false }, axisTick: { show: false }, axisLine: { show: false } };
     const label = { color: t.ink, fontSize: 12, interval: 0 };
     return {
-      grid: { left: 4, right: 12, top: 6, bottom: 40, outerBoundsMode: "same", outerBoundsContain: "axisLabel", containLabel: true },
-      xAxis: { ...style, data: spec.columns, axisLabel: { ...label, rotate: Math.max(...spec.columns.map((name) => name.length), 0) * 6.5 > cell ? 40 : 0 } },
-      yAxis: { ...style, data: spec.rows, inverse: true, axisLabel: { ...label, width: size.width * 0.3, overflow: "break" } },
+      grid: { left: margin + 10, right: 12, top: 6, bottom: turned ? 44 + Math.min(90, longest(spec.columns) * 0.68) : 66 },
+      xAxis: { ...style, data: spec.columns, axisLabel: { ...label, rotate: turned ? 40 : 0, width: turned ? 120 : cell, overflow: turned ? "truncate" : "break" } },
+      yAxis: { ...style, data: spec.rows, inverse: true, axisLabel: { ...label, width: margin, overflow: "break", lineHeight: 14 } },
       visualMap: coloured({ label: spec.axis.label, unit: spec.axis.unit, from: -spec.limit, to: spec.limit }, t, { inRange: { color: t.sides } }),
       series: [
         {
@@ -528,7 +553,7 @@
         spec.nodes.filter((node) => !spec.flows.some((flow) => flow.to === node)).length,
         spec.nodes.filter((node) => !spec.flows.some((flow) => flow.from === node)).length,
       );
-      size.height = Math.max(260, 190 + 34 * ends);
+      size.height = Math.max(260, 190 + 40 * ends);
     } else if (spec.kind === "bars" && spec.horizontal) {
       size.height = 60 + 20 * Math.min(3, spec.bars.length) + spec.categories.length * (22 + (spec.stacked ? 8 : 14 * spec.bars.length));
     } else if (spec.kind === "heat") {
@@ -559,7 +584,8 @@
   // ---- drawing -----------------------------------------------------------------------------------------------------
   const last = {};
   specs.forEach((spec, index) => {
-    if (spec.kind === "lines") last[spec.linked ?? `own${index}`] = spec;
+    spec.empty = [spec.series, spec.clouds].some((all) => all && !all.some((one) => finite(one.y).length)) || (spec.east && !finite(spec.east).length);
+    if (spec.kind === "lines" && !spec.empty) last[spec.linked ?? `own${index}`] = spec;
   });
   Object.values(last).forEach((spec) => (spec.slider = true));
 
@@ -576,6 +602,9 @@
       one.chart.resize({ width: paper ?? "auto", height: size.height ?? "auto" });
     }
     const style = base(t);
+    if (one.spec.empty) {
+      style.graphic = [{ type: "text", left: "center", top: "middle", style: { text: "No values", fill: t.quiet, fontSize: 14 } }];
+    }
     const option = kinds[one.spec.kind](one.spec, t, size, () => one.chart);
     if (zoom) option.dataZoom?.forEach((each, index) => Object.assign(each, zoom[index]));
     one.chart.setOption({ ...style, ...option, tooltip: { ...style.tooltip, ...option.tooltip } }, true);

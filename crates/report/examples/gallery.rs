@@ -145,7 +145,10 @@ fn balances(predicted: &Trace) -> Result<Section, Box<dyn Error>> {
     };
     Ok(Section::new("Forces and energy")
         .with(build::force_budget(predicted, &[], true)?)
-        .with(build::force_budget(predicted, &["tractive_force_n", "rolling_resistance_n"], false)?)
+        .with(Plot {
+            title: "Traction against rolling resistance".to_owned(),
+            ..build::force_budget(predicted, &["tractive_force_n", "rolling_resistance_n"], false)?
+        })
         .with(flow)
         .with(Plot::new("Fuel by cycle", consumption)))
 }

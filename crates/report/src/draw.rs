@@ -90,14 +90,34 @@ pub(crate) fn same_length(
 }
 
 /// What is said where not every sample is drawn.
-pub(crate) fn thinned(name: &str, drawn: usize, of: usize, how: &str) -> Option<String> {
-    (drawn < of).then(|| {
-        format!(
-            "Thinned: {} of the {} samples of {name} are drawn, {how}.",
-            number::number(drawn as f64),
-            number::number(of as f64)
-        )
-    })
+#[derive(Debug, Default)]
+pub(crate) struct Thinned {
+    /// Samples drawn, of how many, of which series.
+    parts: Vec<(usize, usize, Vec<String>)>,
+}
+
+impl Thinned {
+    pub(crate) fn add(&mut self, name: &str, drawn: usize, of: usize) {
+        if drawn >= of {
+            return;
+        }
+        match self.parts.iter_mut().find(|(d, o, _)| (*d, *o) == (drawn, of)) {
+            Some((.., names)) => names.push(name.to_owned()),
+            None => self.parts.push((drawn, of, vec![name.to_owned()])),
+        }
+    }
+
+    pub(crate) fn note(&self, how: &str) -> Option<String> {
+        let count = |samples: usize| number::number(samples as f64);
+        let words: Vec<String> = self
+            .parts
+            .iter()
+            .map(|(drawn, of, names)| {
+                format!("{} of {} samples of {}", count(*drawn), count(*of), names.join(", "))
+            })
+            .collect();
+        (!words.is_empty()).then(|| format!("Thinned to {how}: {}.", words.join("; ")))
+    }
 }
 
 pub(crate) const BY_EXTREMES: &str = "the least and the greatest of each step of a pixel's width";
@@ -114,6 +134,19 @@ mod tests {
             "[0,0,8.333333,null,null]"
         );
         assert_eq!(scale.words(), "from 0 to 8.333 m/s");
+    }
+
+    #[test]
+    fn one_sentence_tells_what_was_thinned() {
+        let mut thinned = Thinned::default();
+        assert_eq!(thinned.note("extremes"), None);
+        for (name, drawn, of) in [("a", 20, 60_000), ("b", 20, 60_000), ("c", 5, 5), ("d", 7, 90)] {
+            thinned.add(name, drawn, of);
+        }
+        assert_eq!(
+            thinned.note("extremes").unwrap(),
+            "Thinned to extremes: 20 of 60\u{202f}000 samples of a, b; 7 of 90 samples of d."
+        );
     }
 
     #[test]

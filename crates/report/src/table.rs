@@ -149,8 +149,8 @@ impl Figure {
     pub(crate) fn html(&self) -> String {
         let (class, spoken) = match self.tone {
             Tone::Plain => ("", ""),
-            Tone::Good => (" good", "<span class=\"tone\">met</span>"),
-            Tone::Bad => (" bad", "<span class=\"tone\">not met</span>"),
+            Tone::Good => (" good", " <span class=\"tone\">met</span>"),
+            Tone::Bad => (" bad", " <span class=\"tone\">not met</span>"),
         };
         let mut html = format!(
             "<div class=\"tile{class}\"><dt>{}</dt><dd>{}{spoken}",

@@ -1,6 +1,6 @@
 //! Cumulative probability as steps, with bands.
 
-use crate::draw::{BY_EXTREMES, Drawn, Scale, same_length, thinned};
+use crate::draw::{BY_EXTREMES, Drawn, Scale, Thinned, same_length};
 use crate::thin::{BUCKETS, extremes};
 use crate::{Axis, ReportError};
 use serde_json::{Value, json};
@@ -38,13 +38,13 @@ impl Cumulative {
         }
         let x = Scale::new(&self.axis, self.steps.iter().flat_map(|steps| steps.x.iter().copied()));
         let y = Scale::new(&Axis::new("cumulative probability", ""), [0.0, 1.0].into_iter());
-        let mut notes = Vec::new();
+        let mut thinned = Thinned::default();
         let series: Vec<Value> = self
             .steps
             .iter()
             .map(|steps| {
                 let kept = extremes(&steps.x, &[&steps.probability], BUCKETS);
-                notes.extend(thinned(&steps.name, kept.len(), steps.x.len(), BY_EXTREMES));
+                thinned.add(&steps.name, kept.len(), steps.x.len());
                 let pick = |values: &[f64], scale: &Scale| scale.all(kept.iter().map(|at| values[*at]));
                 json!({
                     "name": steps.name,
@@ -64,6 +64,6 @@ impl Cumulative {
             x.words()
         );
         let spec = json!({ "kind": "cumulative", "x": x.spec(), "y": y.spec(), "series": series });
-        Ok(Drawn { spec, alt, notes })
+        Ok(Drawn { spec, alt, notes: thinned.note(BY_EXTREMES).into_iter().collect() })
     }
 }

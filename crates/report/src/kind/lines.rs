@@ -1,6 +1,6 @@
 //! Lines over a common axis, with bands, shaded intervals and marks.
 
-use crate::draw::{BY_EXTREMES, Drawn, Scale, same_length, thinned};
+use crate::draw::{BY_EXTREMES, Drawn, Scale, Thinned, same_length};
 use crate::thin::{BUCKETS, extremes};
 use crate::{Axis, ReportError};
 use serde_json::{Value, json};
@@ -124,7 +124,7 @@ impl Lines {
         self.check(plot)?;
         let x = Scale::new(&self.x, self.series.iter().flat_map(|series| series.x.iter().copied()));
         let y = Scale::new(&self.y, self.series.iter().flat_map(values));
-        let mut notes = Vec::new();
+        let mut thinned = Thinned::default();
         let common: Option<Vec<usize>> = self.stacked.then(|| {
             let columns: Vec<&[f64]> = self.series.iter().map(|series| series.y.as_slice()).collect();
             let base = self.series.first().map_or(&[][..], |first| &first.x);
@@ -135,7 +135,7 @@ impl Lines {
             .iter()
             .map(|series| {
                 let kept = common.clone().unwrap_or_else(|| kept(series));
-                notes.extend(thinned(&series.name, kept.len(), series.x.len(), BY_EXTREMES));
+                thinned.add(&series.name, kept.len(), series.x.len());
                 let pick = |values: &[f64], scale: &Scale| scale.all(kept.iter().map(|at| values[*at]));
                 json!({
                     "name": series.name,
@@ -147,7 +147,8 @@ impl Lines {
                 })
             })
             .collect();
-        notes.extend(self.intervals_in_words(&x.axis.unit));
+        let notes =
+            thinned.note(BY_EXTREMES).into_iter().chain(self.intervals_in_words(&x.axis.unit)).collect();
         let spec = json!({
             "kind": "lines",
             "x": x.spec(),
@@ -233,7 +234,7 @@ mod tests {
         let drawn = lines.draw("speed").unwrap();
         let points = drawn.spec["series"][0]["y"].as_array().unwrap();
         assert!(points.len() < 2_100 && points.contains(&json!(7.5)));
-        assert!(drawn.notes[0].starts_with("Thinned: "), "{:?}", drawn.notes);
+        assert!(drawn.notes[0].starts_with("Thinned to "), "{:?}", drawn.notes);
         assert!(drawn.alt.contains("speed from −1 to 7.5 m/s"), "{}", drawn.alt);
     }
 

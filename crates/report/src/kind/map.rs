@@ -1,7 +1,7 @@
 //! A path seen from above, north up, equal scales.
 
 use super::scatter::colour_spec;
-use crate::draw::{BY_EXTREMES, Drawn, Scale, same_length, thinned};
+use crate::draw::{BY_EXTREMES, Drawn, Scale, Thinned, same_length};
 use crate::thin::extremes;
 use crate::{Axis, Colour, ReportError};
 use serde_json::{Value, json};
@@ -50,8 +50,9 @@ impl Map {
         let colour =
             self.colour.as_ref().map(|colour| Scale::new(&colour.axis, colour.values.iter().copied()));
         let kept = self.kept(0, samples);
-        let mut notes: Vec<String> =
-            thinned("the path", kept.len(), samples, BY_EXTREMES).into_iter().collect();
+        let mut thinned = Thinned::default();
+        thinned.add("the path", kept.len(), samples);
+        let mut notes: Vec<String> = thinned.note(BY_EXTREMES).into_iter().collect();
         let pick = |values: &[f64], kept: &[usize]| both.all(kept.iter().map(|at| values[*at]));
         let highlights: Vec<Value> = self
             .highlights

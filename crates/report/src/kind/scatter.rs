@@ -1,6 +1,6 @@
 //! Points, coloured by a third value where there is one.
 
-use crate::draw::{Drawn, Scale, same_length, thinned};
+use crate::draw::{Drawn, Scale, Thinned, same_length};
 use crate::thin::cloud;
 use crate::{Axis, ReportError};
 use serde_json::{Value, json};
@@ -52,18 +52,13 @@ impl Scatter {
         let colour = colours
             .first()
             .map(|first| Scale::new(&first.axis, colours.iter().flat_map(|c| c.values.iter().copied())));
-        let mut notes = Vec::new();
+        let mut thinned = Thinned::default();
         let clouds: Vec<Value> = self
             .clouds
             .iter()
             .map(|points| {
                 let kept = cloud(&points.x, &points.y, 120, 60);
-                notes.extend(thinned(
-                    &points.name,
-                    kept.len(),
-                    points.x.len(),
-                    "one where many lie on each other, and every outermost one",
-                ));
+                thinned.add(&points.name, kept.len(), points.x.len());
                 let pick = |values: &[f64], scale: &Scale| scale.all(kept.iter().map(|at| values[*at]));
                 let third = points.colour.as_ref().zip(colour.as_ref());
                 json!({
@@ -88,7 +83,8 @@ impl Scatter {
         let colour = colour.map(|scale| colour_spec(&scale));
         let spec =
             json!({ "kind": "scatter", "x": x.spec(), "y": y.spec(), "clouds": clouds, "colour": colour });
-        Ok(Drawn { spec, alt, notes })
+        let how = "one where many lie on each other, and every outermost one";
+        Ok(Drawn { spec, alt, notes: thinned.note(how).into_iter().collect() })
     }
 }
 

@@ -51,7 +51,7 @@ fn runs_are_pooled_by_their_pairs() {
     assert!((speed.bias - 0.071_429).abs() < 1e-6, "{speed:?}");
     assert!((speed.rmse - 0.210_442).abs() < 1e-6, "{speed:?}");
     assert!((speed.mae - 0.185_714).abs() < 1e-6, "{speed:?}");
-    assert_eq!(speed.worst_run, "r1");
+    assert_eq!((speed.worst_run.as_str(), speed.within_band), ("r1", 2));
     assert!((speed.worst_rmse - 0.3).abs() < 1e-12);
 }
 

@@ -6,7 +6,9 @@
 //! data cannot tell apart, [`statistics`] holds quantiles and seeded draws.
 
 pub mod clusters;
-//pub mod coastdown;
+pub mod coastdown;
+pub mod fit;
 pub mod least_squares;
 pub mod separable;
 pub mod statistics;
+pub mod study;

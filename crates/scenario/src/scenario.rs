@@ -42,6 +42,8 @@ pub struct ReplaySettings {
     pub window_s: Option<f64>,
     /// Half width of the local fit that gives speed and acceleration of the recording [s].
     pub smoothing_s: Option<f64>,
+    /// Samples in which the recording slows down harder are not compared: brakes that were not recorded [m/s²].
+    pub least_acceleration_m_s2: Option<f64>,
     /// Longest step of the integration [s].
     pub step_s: f64,
 }
@@ -136,6 +138,16 @@ impl Scenario {
     /// As [`Scenario::read`].
     pub fn model(&self, registry: &Registry) -> Result<Model, ScenarioError> {
         model(&self.document, &parse(&self.document)?, registry, &mut Vec::new())
+    }
+
+    /// The model with other numbers at some paths.
+    ///
+    /// # Errors
+    /// As [`Scenario::read`].
+    pub fn model_with(&self, changes: &[(&str, f64)], registry: &Registry) -> Result<Model, ScenarioError> {
+        let document = self.document.with(changes)?;
+        check_numbers(&document)?;
+        model(&document, &parse(&document)?, registry, &mut Vec::new())
     }
 
     /// The resolved text and where it comes from.
@@ -420,6 +432,7 @@ fn replay_settings(file: &ScenarioFile) -> ReplaySettings {
         }),
         window_s: replay.and_then(|replay| replay.window_s),
         smoothing_s: replay.and_then(|replay| replay.smoothing_s),
+        least_acceleration_m_s2: replay.and_then(|replay| replay.least_acceleration_m_s2),
         step_s: file.simulation.step_s,
     }
 }

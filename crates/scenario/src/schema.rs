@@ -128,6 +128,7 @@ pub struct ReplayFile {
     pub inputs: Option<Vec<InputFile>>,
     pub window_s: Option<f64>,
     pub smoothing_s: Option<f64>,
+    pub least_acceleration_m_s2: Option<f64>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]

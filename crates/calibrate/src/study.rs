@@ -1,0 +1,428 @@
+//! A scenario held against a recording: what drives the model, what it is told, and what it is judged by.
+
+use crate::fit::{Fit, Parameter, Residuals, fit};
+use crate::statistics::mean;
+use headland_plugin::Registry;
+use headland_recording::{RecordedRun, Recording};
+use headland_scenario::{Scenario, ScenarioError};
+use headland_sim::{Drive, Inputs, Model, Outcome, Replay, ReplayError, replay};
+use headland_trace::{Origin, Trace, TraceError};
+use rayon::prelude::*;
+
+/// A recording that cannot be held against a scenario.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// The scenario.
+    #[error("{}", .0.told())]
+    Scenario(#[from] ScenarioError),
+    /// A run cannot drive the model.
+    #[error("run `{run}`: {error}")]
+    Replay {
+        /// The run.
+        run: String,
+        /// Why.
+        error: ReplayError,
+    },
+    /// Nothing that was measured is predicted.
+    #[error(
+        "run `{run}` holds nothing that the model predicts when `{drive}` drives it; measured are: {}; it would take one of: {}",
+        measured.join(", "), wanted.join(", ")
+    )]
+    NothingToCompare {
+        /// The run.
+        run: String,
+        /// What drives the model.
+        drive: &'static str,
+        /// Channels that were measured.
+        measured: Vec<String>,
+        /// Channels that could be compared.
+        wanted: Vec<String>,
+    },
+    /// The scenario frees nothing.
+    #[error("{} has no `free` parameters, so there is nothing to fit", path.display())]
+    NothingFree {
+        /// The scenario.
+        path: std::path::PathBuf,
+    },
+    /// A trace does not come together: a bug.
+    #[error(transparent)]
+    Trace(#[from] TraceError),
+}
+
+/// One recorded run, ready to drive the model.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// Its name.
+    pub id: String,
+    /// Its channels, with what follows from them (`battery_power_w`).
+    pub trace: Trace,
+    /// How it drives the model.
+    pub how: Replay,
+    /// Channels by which the model is judged.
+    pub signals: Vec<String>,
+    /// Whether it must not be fitted.
+    pub held_out: bool,
+    /// Values that the recording knows for this run: dotted path and value.
+    pub known: Vec<(String, f64)>,
+    /// Samples that are compared.
+    pub compared: Vec<bool>,
+}
+
+/// A scenario with the recording that it is held against.
+pub struct Study<'a> {
+    scenario: &'a Scenario,
+    registry: &'a Registry,
+    /// The runs.
+    pub runs: Vec<Measured>,
+    /// The free parameters, with what the recording knows of them as prior.
+    pub parameters: Vec<Parameter>,
+    paths: Vec<String>,
+    /// What was decided on the way, for people.
+    pub notes: Vec<String>,
+}
+
+/// Half width of the local fit of recorded speed, in samples, where the scenario does not say.
+const SMOOTHING_SAMPLES: f64 = 5.0;
+/// Recordings longer than this are driven forward in windows [s].
+const LONG_S: f64 = 180.0;
+/// Their length [s].
+const WINDOW_S: f64 = 30.0;
+
+impl<'a> Study<'a> {
+    /// Brings a scenario and a recording together.
+    ///
+    /// # Errors
+    /// [`StudyError`] where a run cannot drive the model, or gives nothing to judge it by.
+    pub fn new(
+        scenario: &'a Scenario,
+        recording: &Recording,
+        registry: &'a Registry,
+    ) -> Result<Self, StudyError> {
+        let model = scenario.model(registry)?;
+        let mut notes = Vec::new();
+        let mut runs = Vec::new();
+        for run in &recording.runs {
+            runs.push(measured(scenario, &model, run, &mut notes)?);
+        }
+        let mut parameters = Vec::new();
+        let mut paths = Vec::new();
+        for free in &scenario.free {
+            let mut parameter =
+                Parameter { name: free.name.clone(), value: free.value, sd: free.sd, bounds: free.bounds };
+            for known in &recording.known {
+                if scenario.document().resolve(&known.name).is_ok_and(|path| path == free.path) {
+                    parameter.value = known.value.clamp(free.bounds.0, free.bounds.1);
+                    parameter.sd = known.sd.or(parameter.sd);
+                    notes.push(format!(
+                        "the prior of `{}` is what the recording knows of it: {}",
+                        free.name, known.value
+                    ));
+                }
+            }
+            parameters.push(parameter);
+            paths.push(free.path.clone());
+        }
+        notes.dedup();
+        Ok(Self { scenario, registry, runs, parameters, paths, notes })
+    }
+
+    /// The scenario.
+    pub fn scenario(&self) -> &Scenario {
+        self.scenario
+    }
+
+    /// Dotted paths of the free parameters.
+    pub fn paths(&self) -> &[String] {
+        &self.paths
+    }
+
+    /// The prior values of the free parameters.
+    pub fn priors(&self) -> Vec<f64> {
+        self.parameters.iter().map(|parameter| parameter.value).collect()
+    }
+
+    /// The model of a run, with these values of the free parameters.
+    ///
+    /// # Errors
+    /// [`StudyError::Scenario`].
+    pub fn model(&self, run: &Measured, values: &[f64]) -> Result<Model, StudyError> {
+        let free = self.paths.iter().map(String::as_str).zip(values.iter().copied());
+        let known = run.known.iter().map(|(path, value)| (path.as_str(), *value));
+        let known = known.filter(|(path, _)| !self.paths.iter().any(|free| free == path));
+        let changes: Vec<(&str, f64)> = free.chain(known).collect();
+        Ok(self.scenario.model_with(&changes, self.registry)?)
+    }
+
+    /// Drives the model with a run.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub fn replay(&self, run: &Measured, values: &[f64]) -> Result<Outcome, StudyError> {
+        let model = self.model(run, values)?;
+        let mut outcome = replay(&model, &run.trace, &run.how)
+            .map_err(|error| StudyError::Replay { run: run.id.clone(), error })?;
+        derive(&mut outcome.trace, Origin::Predicted)?;
+        Ok(outcome)
+    }
+
+    /// Drives the model with every run, in parallel.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub fn replay_all(&self, values: &[f64]) -> Result<Vec<Outcome>, StudyError> {
+        self.runs.par_iter().map(|run| self.replay(run, values)).collect()
+    }
+
+    /// Fits the free parameters to the runs that are not held out.
+    ///
+    /// Each channel is weighted by the scatter of its residual, which is found along the way.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub fn calibrate(&self) -> Result<Fit, StudyError> {
+        if self.parameters.is_empty() {
+            return Err(StudyError::NothingFree { path: self.scenario.document().path().to_owned() });
+        }
+        /// Rounds in which weights and parameters settle.
+        const ROUNDS: usize = 3;
+        let runs: Vec<&Measured> = self.runs.iter().filter(|run| !run.held_out).collect();
+        let runs = if runs.is_empty() { self.runs.iter().collect() } else { runs };
+        let mut weights = self.weights(&runs, &self.priors())?;
+        let mut found = fit(&self.parameters, |values| self.residuals(&runs, values, &weights))?;
+        for _ in 1..ROUNDS {
+            weights = self.weights(&runs, &found.values())?;
+            found = fit(&self.parameters, |values| self.residuals(&runs, values, &weights))?;
+        }
+        Ok(found)
+    }
+
+    /// Signal by signal: 1 / (scatter · √(samples per independent sample)).
+    fn weights(&self, runs: &[&Measured], values: &[f64]) -> Result<Vec<(String, f64)>, StudyError> {
+        let outcomes: Vec<Outcome> =
+            runs.par_iter().map(|run| self.replay(run, values)).collect::<Result<_, _>>()?;
+        let mut names: Vec<&String> = runs.iter().flat_map(|run| &run.signals).collect();
+        names.sort_unstable();
+        names.dedup();
+        let mut weights = Vec::new();
+        for name in names {
+            let (mut sum, mut product, mut count) = (0.0, 0.0, 0usize);
+            for (run, outcome) in runs.iter().zip(&outcomes) {
+                let residual = difference(run, &outcome.trace, name);
+                sum += residual.iter().map(|value| value * value).sum::<f64>();
+                product += residual.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>();
+                count += residual.iter().filter(|value| **value != 0.0).count();
+            }
+            if count == 0 || sum == 0.0 {
+                weights.push((name.clone(), 1.0));
+                continue;
+            }
+            // An autoregressive residual of correlation r is worth (1 − r)/(1 + r) of its samples.
+            let correlation = (product / sum).clamp(0.0, 0.9999);
+            let share = (1.0 - correlation) / (1.0 + correlation);
+            weights.push((name.clone(), (share / (sum / count as f64)).sqrt()));
+        }
+        Ok(weights)
+    }
+
+    fn residuals(
+        &self,
+        runs: &[&Measured],
+        values: &[f64],
+        weights: &[(String, f64)],
+    ) -> Result<Residuals, StudyError> {
+        let of_run = |run: &&Measured| -> Result<Residuals, StudyError> {
+            let outcome = self.replay(run, values)?;
+            let mut clusters: Residuals = Vec::new();
+            for (name, weight) in weights.iter().filter(|(name, _)| run.signals.contains(name)) {
+                let residual: Vec<f64> =
+                    difference(run, &outcome.trace, name).iter().map(|value| value * weight).collect();
+                let blocks = blocks(run, runs.len());
+                for (index, block) in residual.chunks(residual.len().div_ceil(blocks).max(1)).enumerate() {
+                    if clusters.len() <= index {
+                        clusters.push(Vec::new());
+                    }
+                    clusters[index].extend_from_slice(block);
+                }
+            }
+            Ok(clusters)
+        };
+        let all: Vec<Residuals> = runs.par_iter().map(of_run).collect::<Result<_, _>>()?;
+        Ok(all.into_iter().flatten().collect())
+    }
+}
+
+/// In how many blocks a run is cut, so that there are enough of them to see their scatter.
+fn blocks(run: &Measured, runs: usize) -> usize {
+    /// So many clusters give an interval worth its name.
+    const WANTED: usize = 10;
+    /// A shorter block would depend on its neighbours [s].
+    const SHORTEST_S: f64 = 20.0;
+    if runs >= WANTED {
+        return 1;
+    }
+    let possible = (run.trace.duration_s() / SHORTEST_S).max(1.0);
+    // The number is small and positive.
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "between 1 and some thousands"
+    )]
+    let possible = possible as usize;
+    WANTED.div_ceil(runs).min(possible)
+}
+
+/// Modelled minus measured; 0 where one of them is missing or not compared.
+fn difference(run: &Measured, modelled: &Trace, name: &str) -> Vec<f64> {
+    let (Some(measured), Some(modelled)) = (run.trace.get(name), modelled.get(name)) else {
+        return vec![0.0; run.trace.len()];
+    };
+    let one = |((measured, modelled), compared): ((&f64, &f64), &bool)| {
+        let difference = modelled - measured;
+        if *compared && difference.is_finite() { difference } else { 0.0 }
+    };
+    measured.iter().zip(modelled).zip(&run.compared).map(one).collect()
+}
+
+fn measured(
+    scenario: &Scenario,
+    model: &Model,
+    run: &RecordedRun,
+    notes: &mut Vec<String>,
+) -> Result<Measured, StudyError> {
+    let mut trace = run.trace.clone();
+    derive(&mut trace, Origin::Measured)?;
+    let settings = &scenario.replay;
+    let drive = settings.drive.unwrap_or_else(|| drive_of(&trace, model));
+    let also = settings.inputs.clone().unwrap_or_else(|| inputs_of(&trace, drive));
+    let period_s = trace.duration_s() / (trace.len().max(2) - 1) as f64;
+    let smoothing_s = settings.smoothing_s.unwrap_or(SMOOTHING_SAMPLES * period_s);
+    let forward = drive != Drive::Speed && drive != Drive::Coast;
+    let window_s = settings.window_s.or((forward && trace.duration_s() > LONG_S).then_some(WINDOW_S));
+    let mut known = Vec::new();
+    for one in &run.known {
+        match scenario.document().resolve(&one.name) {
+            Ok(path) => known.push((path, one.value)),
+            Err(_) => {
+                notes.push(format!("the recording knows `{}`, of which the scenario has nothing", one.name))
+            }
+        }
+    }
+    let wanted = signals(drive);
+    let signals: Vec<String> = wanted
+        .iter()
+        .filter(|name| trace.get(name).is_some_and(|values| values.iter().any(|value| value.is_finite())))
+        .map(|name| (*name).to_owned())
+        .collect();
+    let signals = predicted(signals, model, &trace);
+    if signals.is_empty() {
+        return Err(StudyError::NothingToCompare {
+            run: run.id.clone(),
+            drive: drive_name(drive),
+            measured: trace.channels().iter().map(|channel| channel.name.clone()).collect(),
+            wanted: wanted.iter().map(|name| (*name).to_owned()).collect(),
+        });
+    }
+    let how = Replay { drive, also, window_s, smoothing_s, step_s: settings.step_s };
+    let compared = compared(&trace, smoothing_s, settings.least_acceleration_m_s2);
+    Ok(Measured { id: run.id.clone(), trace, how, signals, held_out: run.held_out, known, compared })
+}
+
+/// What can drive the model best: rolling free, a recorded force, a recorded torque, and else the speed.
+fn drive_of(trace: &Trace, model: &Model) -> Drive {
+    let coasts = |values: &[f64]| values.iter().all(|value| *value >= 0.5);
+    if trace.get("coasting").is_some_and(coasts) {
+        Drive::Coast
+    } else if trace.get("tractive_force_n").is_some() {
+        Drive::Force
+    } else if trace.get("motor_torque_n_m").or_else(|| trace.get("engine_torque_n_m")).is_some()
+        && model.driveline.force_of_torque_n(1.0, 1.0).is_some()
+    {
+        Drive::Torque
+    } else {
+        Drive::Speed
+    }
+}
+
+/// Every circumstance that was recorded throughout; neutral only where it is not what drives.
+fn inputs_of(trace: &Trace, drive: Drive) -> Vec<Inputs> {
+    let whole =
+        |name: &&str| trace.get(name).is_some_and(|values| values.iter().all(|value| value.is_finite()));
+    Inputs::ALL
+        .into_iter()
+        .filter(|input| !(drive == Drive::Coast && *input == Inputs::Coasting))
+        .filter(|input| input.channels().iter().all(|name| whole(name)))
+        .collect()
+}
+
+/// The name of a drive, as scenarios write it.
+pub fn drive_name(drive: Drive) -> &'static str {
+    match drive {
+        Drive::Speed => "Speed",
+        Drive::Torque => "Torque",
+        Drive::Force => "Force",
+        Drive::Coast => "Coast",
+    }
+}
+
+fn signals(drive: Drive) -> &'static [&'static str] {
+    match drive {
+        Drive::Speed => &[
+            "tractive_force_n",
+            "motor_torque_n_m",
+            "engine_torque_n_m",
+            "fuel_rate_kg_s",
+            "battery_power_w",
+        ],
+        Drive::Torque | Drive::Force | Drive::Coast => &["speed_m_s", "fuel_rate_kg_s", "battery_power_w"],
+    }
+}
+
+/// Those that the model's driveline shows at all.
+fn predicted(signals: Vec<String>, model: &Model, trace: &Trace) -> Vec<String> {
+    let how = Replay { drive: Drive::Speed, also: Vec::new(), window_s: None, smoothing_s: 1.0, step_s: 1.0 };
+    let times = trace.time_s();
+    let Some(first) = times.first() else { return Vec::new() };
+    let probe = trace.slice(*first, times.get(9).copied().unwrap_or(*first));
+    let Ok(mut outcome) = replay(model, &probe, &how) else { return signals };
+    if derive(&mut outcome.trace, Origin::Predicted).is_err() {
+        return signals;
+    }
+    let shown = |name: &String| {
+        outcome.trace.get(name).is_some_and(|values| values.iter().any(|value| !value.is_nan()))
+    };
+    signals.into_iter().filter(shown).collect()
+}
+
+/// Samples in which the vehicle does not slow down harder than `least`.
+fn compared(trace: &Trace, smoothing_s: f64, least_m_s2: Option<f64>) -> Vec<bool> {
+    let Some(least) = least_m_s2 else { return vec![true; trace.len()] };
+    match trace.get("speed_m_s") {
+        Some(speed) => {
+            let motion = headland_sim::local_fit(trace.time_s(), speed, smoothing_s);
+            motion.slope.iter().map(|slope| *slope >= least).collect()
+        }
+        None => vec![true; trace.len()],
+    }
+}
+
+/// Adds what follows from other channels.
+fn derive(trace: &mut Trace, origin: Origin) -> Result<(), TraceError> {
+    if trace.get("battery_power_w").is_none()
+        && let (Some(voltage), Some(current)) =
+            (trace.get("battery_voltage_v"), trace.get("battery_current_a"))
+    {
+        let power = voltage.iter().zip(current).map(|(voltage, current)| voltage * current).collect();
+        trace.push("battery_power_w", power, origin)?;
+    }
+    Ok(())
+}
+
+/// Root mean square of what is compared, by signal: modelled minus measured.
+pub fn rms(run: &Measured, modelled: &Trace, name: &str) -> f64 {
+    let squares: Vec<f64> = difference(run, modelled, name)
+        .iter()
+        .filter(|value| **value != 0.0)
+        .map(|value| value * value)
+        .collect();
+    if squares.is_empty() { f64::NAN } else { mean(&squares).sqrt() }
+}

@@ -129,7 +129,7 @@ def main():
             across, down = (float(part) for part in options.click.split("x"))
             remote.do("click", pos={"x": across, "y": down})
         remote.do("set_time", timeline="time", time=round(options.at * 1e9))
-        remote.do("wait_for", min_steps=20)
+        remote.do("wait_for", min_steps=90)
         remote.do("screenshot", pixels_per_point=options.scale, save_path=str(picture))
         wait_for(picture.is_file, "the picture", 20)
         remote.close()

@@ -19,8 +19,14 @@ const PERIOD_S: f64 = 40.0;
 const HILL_M: f64 = 160.0;
 const BEND_M: f64 = 55.0;
 
-const TRACTOR: Body =
-    Body { length_m: 6.6, width_m: 3.0, height_m: 3.7, wheel_radius_m: 0.98, wheelbase_m: 3.6, track_m: 2.25 };
+const TRACTOR: Body = Body {
+    length_m: 6.6,
+    width_m: 3.0,
+    height_m: 3.7,
+    wheel_radius_m: 0.98,
+    wheelbase_m: 3.6,
+    track_m: 2.25,
+};
 
 const FORCES: [ForceArrow; 4] = [
     ForceArrow { channel: "tractive_force_n", label: "traction", axis: Axis::Forward },
@@ -36,7 +42,12 @@ fn motion(time_s: f64, mean_m_s: f64) -> [f64; 3] {
     [mean_m_s - swing * cosine, swing * rate * sine, mean_m_s * time_s - swing / rate * sine]
 }
 
-fn push(trace: &mut Trace, name: &str, origin: Origin, value: impl Fn(usize) -> f64) -> Result<(), TraceError> {
+fn push(
+    trace: &mut Trace,
+    name: &str,
+    origin: Origin,
+    value: impl Fn(usize) -> f64,
+) -> Result<(), TraceError> {
     let values = (0..trace.len()).map(value).collect();
     trace.push(name, values, origin)
 }
@@ -66,7 +77,8 @@ fn drive(id: &str, mean_m_s: f64, wind: f64, noise: f64, origin: Origin) -> Resu
     let behind_m = |index: usize| wind * (times[index] - 20.0 * (1.0 - (-times[index] / 20.0).exp()));
     // Many frequencies that share no period look like noise.
     let noise = |index: usize, seed: f64| {
-        (1..8).map(|wave| (times[index] * (7.3 + 3.7 * seed * f64::from(wave).sqrt())).sin()).sum::<f64>() * noise
+        (1..8).map(|wave| (times[index] * (7.3 + 3.7 * seed * f64::from(wave).sqrt())).sin()).sum::<f64>()
+            * noise
     };
     let position_m: Vec<f64> = (0..times.len()).map(|index| motions[index][2] - behind_m(index)).collect();
     let road = road(&position_m);

@@ -7,6 +7,7 @@ use crate::path::Pose;
 use crate::plots::{COMPARED, residual};
 use crate::recorder::{Recorder, TIMELINE, encode};
 use crate::{Scene, ViewError};
+use rerun::datatypes::{TimeInt, TimeRange, TimeRangeBoundary};
 use rerun::external::re_log_types::{BlueprintActivationCommand, StoreKind};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
     Background, ContainerBlueprint, EyeControls3D, LineGrid3D, PanelBlueprint, PlotLegend, TimeAxis,
@@ -15,7 +16,6 @@ use rerun::external::re_sdk_types::blueprint::archetypes::{
 use rerun::external::re_sdk_types::blueprint::components::{
     BackgroundKind, ContainerKind, Corner2D, LoopMode, PanelState, PlayState,
 };
-use rerun::datatypes::{TimeInt, TimeRange, TimeRangeBoundary};
 use rerun::log::LogMsg;
 use rerun::{ApplicationId, AsComponents, EntityPath, RecordingStreamBuilder};
 
@@ -64,7 +64,11 @@ fn main_heading_rad(poses: &[Pose], start_rad: f64) -> f64 {
     let Some((first, last)) = poses.first().zip(poses.last()) else { return start_rad };
     let (east_m, north_m) = (last.at[0] - first.at[0], last.at[1] - first.at[1]);
     let travelled_m = (last.travelled_m - first.travelled_m).abs();
-    if east_m.hypot(north_m) > 0.5 * travelled_m && travelled_m > 0.0 { east_m.atan2(north_m) } else { start_rad }
+    if east_m.hypot(north_m) > 0.5 * travelled_m && travelled_m > 0.0 {
+        east_m.atan2(north_m)
+    } else {
+        start_rad
+    }
 }
 
 /// A view or a container.
@@ -116,7 +120,13 @@ impl Layout {
         Ok(node)
     }
 
-    fn split(&mut self, kind: ContainerKind, name: &str, parts: &[Node], shares: &[f32]) -> Result<Node, ViewError> {
+    fn split(
+        &mut self,
+        kind: ContainerKind,
+        name: &str,
+        parts: &[Node],
+        shares: &[f32],
+    ) -> Result<Node, ViewError> {
         let node = self.node("container");
         let mut container =
             ContainerBlueprint::new(kind).with_contents(parts.iter().map(|part| part.path.to_string()));
@@ -167,7 +177,9 @@ impl Layout {
         if let [_, _, ..] = lanes {
             let speeds: Vec<EntityPath> = lanes
                 .iter()
-                .flat_map(|lane| [Who::Modelled, Who::Measured].map(|who| entity::channel(&lane.run.id, COMPARED, who)))
+                .flat_map(|lane| {
+                    [Who::Modelled, Who::Measured].map(|who| entity::channel(&lane.run.id, COMPARED, who))
+                })
                 .collect();
             tabs.push(self.plot("Speed of all runs [m/s]", &speeds)?);
         }
@@ -194,7 +206,9 @@ impl Layout {
                     let runs = [Some(lane.run), lane.recording];
                     runs.into_iter().flatten().any(|run| run.trace.channel(channel).is_some())
                 })
-                .flat_map(|channel| [Who::Modelled, Who::Measured].map(|who| entity::channel(id, channel, who)))
+                .flat_map(|channel| {
+                    [Who::Modelled, Who::Measured].map(|who| entity::channel(id, channel, who))
+                })
                 .collect();
             if lines.is_empty() {
                 continue;
@@ -208,7 +222,9 @@ impl Layout {
             shares.push(3.0);
             let compared = lane.recording.is_some_and(|recording| residual(lane.run, recording).is_some());
             if compared && group.channels.iter().any(|channel| channel == COMPARED) {
-                parts.push(self.plot("Speed residual [m/s]", &[entity::channel(id, COMPARED, Who::Residual)])?);
+                parts.push(
+                    self.plot("Speed residual [m/s]", &[entity::channel(id, COMPARED, Who::Residual)])?,
+                );
                 shares.push(2.0);
             }
         }
@@ -222,17 +238,18 @@ impl Layout {
     #[expect(clippy::cast_possible_truncation, reason = "nanoseconds of three centuries fit")]
     fn plot(&mut self, title: &str, lines: &[EntityPath]) -> Result<Node, ViewError> {
         let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
-        let [from, to] = self.times_s.map(|time_s| {
-            TimeRangeBoundary::Absolute(TimeInt((time_s * 1e9).round() as i64))
-        });
+        let [from, to] =
+            self.times_s.map(|time_s| TimeRangeBoundary::Absolute(TimeInt((time_s * 1e9).round() as i64)));
         let axis = TimeAxis::new().with_view_range(TimeRange { start: from, end: to });
         self.view("TimeSeries", title, lines, &[("PlotLegend", &legend), ("TimeAxis", &axis)])
     }
 
     /// What lies around the views.
     fn frame(&self, root: &Node) -> Result<(), ViewError> {
-        let viewport =
-            ViewportBlueprint::new().with_root_container(root.id).with_auto_layout(false).with_auto_views(false);
+        let viewport = ViewportBlueprint::new()
+            .with_root_container(root.id)
+            .with_auto_layout(false)
+            .with_auto_views(false);
         self.log("viewport", &viewport)?;
         for panel in ["blueprint_panel", "selection_panel"] {
             self.log(panel, &PanelBlueprint::new().with_state(PanelState::Hidden))?;

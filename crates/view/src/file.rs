@@ -9,8 +9,7 @@ use rerun::external::re_log_encoding::Encoder;
 use rerun::external::re_log_encoding::rrd::EncodingOptions;
 use rerun::log::LogMsg;
 use rerun::{ApplicationId, RecordingStreamBuilder, TextDocument};
-use std::fs::{self, File};
-use std::io::{BufWriter, Write as _};
+use std::fs;
 use std::path::Path;
 
 /// Writes the scene to a file, which appears whole or not at all.
@@ -25,9 +24,12 @@ pub fn write(scene: &Scene, path: &Path) -> Result<(), ViewError> {
         .map_err(encode)?;
     let file_error = |source| ViewError::File { path: path.to_owned(), source };
     let part = path.with_extension("rrd.part");
-    let mut file = BufWriter::new(File::create(&part).map_err(file_error)?);
-    file.write_all(&bytes).and_then(|()| file.flush()).map_err(file_error)?;
-    fs::rename(&part, path).map_err(file_error)
+    let stored = fs::write(&part, &bytes).and_then(|()| fs::rename(&part, path));
+    if stored.is_err() {
+        // What is left of a full disk or a path that is a folder helps nobody; that it may stay changes nothing.
+        let _ = fs::remove_file(&part);
+    }
+    stored.map_err(file_error)
 }
 
 /// Everything that the file holds: the layout first, so that the viewer has it before the data.
@@ -54,7 +56,14 @@ pub(crate) fn messages(scene: &Scene) -> Result<Vec<LogMsg>, ViewError> {
         };
         vehicle::drive(&to, &run.id, Who::Modelled, path, &scene.vehicle, (&name(Who::Modelled), *colour))?;
         if let Some(measured) = measured {
-            vehicle::drive(&to, &run.id, Who::Measured, measured, &scene.vehicle, (&name(Who::Measured), *pale))?;
+            vehicle::drive(
+                &to,
+                &run.id,
+                Who::Measured,
+                measured,
+                &scene.vehicle,
+                (&name(Who::Measured), *pale),
+            )?;
         }
         forces::draw(&to, scene, run, newton_per_m)?;
         plots::draw(&to, scene, &groups, lane)?;

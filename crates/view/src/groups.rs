@@ -1,7 +1,7 @@
 //! Which channels share a plot.
 
-use crate::colour::{Colour, SERIES};
 use crate::Scene;
+use crate::colour::{Colour, SERIES};
 use crate::plots::COMPARED;
 use headland_units::{stem, unit_of_name};
 
@@ -96,7 +96,9 @@ mod tests {
     #[test]
     fn channels_of_one_unit_share_a_plot_and_speed_comes_first() {
         let mut trace = Trace::new(vec![0.0]).unwrap();
-        for name in ["grade", "drawbar_force_n", "speed_m_s", "tractive_force_n", "state_of_charge", "soil_kg_m3"] {
+        for name in
+            ["grade", "drawbar_force_n", "speed_m_s", "tractive_force_n", "state_of_charge", "soil_kg_m3"]
+        {
             trace.push(name, vec![1.0], Origin::Predicted).unwrap();
         }
         trace.push("pto_power_w", vec![f64::NAN], Origin::Predicted).unwrap();

@@ -98,7 +98,10 @@ mod tests {
         let (lanes, _) = lanes(&scene(&runs, &[])).unwrap();
         let at = |lane: usize, pose: usize| lanes[lane].path.poses[pose].at;
         assert_eq!([at(0, 0), at(0, 1)], [[0.0; 3], [10.0, 0.0, 0.0]]);
-        assert_eq!([at(1, 0), at(1, 1)], [[0.0, -LANE * BODY.width_m, 0.0], [4.0, -LANE * BODY.width_m, 0.0]]);
+        assert_eq!(
+            [at(1, 0), at(1, 1)],
+            [[0.0, -LANE * BODY.width_m, 0.0], [4.0, -LANE * BODY.width_m, 0.0]]
+        );
     }
 
     /// Large coordinates would lose their centimetres in single precision.

@@ -53,9 +53,7 @@ pub(crate) fn path(run: &Run, baseline_m: f64, ground: Option<&Ground>) -> Resul
         return Err(ViewError::NoPath { run: run.id.clone(), present });
     }
     needed.extend(
-        ["position_m", "heading_rad", "elevation_m", "pitch_rad"]
-            .into_iter()
-            .filter(|name| trace.get(name).is_some() && !(located && *name == "position_m")),
+        ["heading_rad", "elevation_m", "pitch_rad"].into_iter().filter(|name| trace.get(name).is_some()),
     );
     let whole: Vec<usize> = (0..trace.len())
         .filter(|index| needed.iter().all(|name| value(trace, name, *index).is_some_and(f64::is_finite)))
@@ -111,7 +109,7 @@ fn from_distance(trace: &Trace, whole: &[usize]) -> Vec<Pose> {
     let mut poses: Vec<Pose> = Vec::with_capacity(whole.len());
     for index in whole {
         let travelled_m = value(trace, "position_m", *index).unwrap_or(0.0);
-        let (sine, cosine) = value(trace, "heading_rad", *index).unwrap_or(FRAC_PI_2).sin_cos();
+        let (sine, cosine) = value(trace, "heading_rad", *index).map_or((1.0, 0.0), f64::sin_cos);
         let (from, [east, north, _]) =
             poses.last().map_or((travelled_m, START.at), |pose| (pose.travelled_m, pose.at));
         let step = travelled_m - from;

@@ -30,7 +30,8 @@ pub(crate) fn draw(to: &Recorder, scene: &Scene, groups: &[Group], lane: &Lane) 
             (false, false) => words,
         };
         let name = of_run(&channel.name, name);
-        let colour = if channel.name == COMPARED { lane.colour } else { groups::colour(groups, &channel.name) };
+        let colour =
+            if channel.name == COMPARED { lane.colour } else { groups::colour(groups, &channel.name) };
         let at = entity::channel(id, &channel.name, Who::Modelled);
         line(to, &at, &name, colour, 2.0, lane.run.trace.time_s(), &channel.values)?;
     }

@@ -1,10 +1,10 @@
 //! The ground as a surface.
 
+use crate::Ground;
 use crate::colour::Colour;
 use crate::mesh::{Mesh, Point};
 use crate::path::{Path, Pose};
 use crate::thin::spread;
-use crate::Ground;
 
 const LIGHT: Colour = [122, 104, 78];
 const DARK: Colour = [98, 82, 60];
@@ -25,7 +25,11 @@ pub(crate) struct Strip {
 /// The least of 1, 2, 5, 10, 20, 50, ... that is `least` or more.
 pub(crate) fn round_up(least: f64) -> f64 {
     let power = 10f64.powf(least.log10().floor());
-    [1.0, 2.0, 5.0, 10.0].map(|digit| digit * power).into_iter().find(|round| *round >= least * (1.0 - 1e-9)).unwrap_or(least)
+    [1.0, 2.0, 5.0, 10.0]
+        .map(|digit| digit * power)
+        .into_iter()
+        .find(|round| *round >= least * (1.0 - 1e-9))
+        .unwrap_or(least)
 }
 
 /// The strip that is `width_m` wide and goes on by `margin_m` at both ends.
@@ -52,7 +56,7 @@ pub(crate) fn strip(path: &Path, width_m: f64, margin_m: f64) -> Strip {
         from = to;
     }
     let inner_m = line.length_m() - 2.0 * margin_m;
-    let spacing_m = round_up((inner_m / 6.0).max(10.0));
+    let spacing_m = round_up((inner_m / 12.0).max(10.0));
     let mut marks = Vec::new();
     let mut mark = 0.0;
     while mark <= inner_m {
@@ -77,7 +81,8 @@ pub(crate) fn surface(ground: &Ground, shift: Point) -> Option<Mesh> {
     for (row, rows) in along.windows(2).enumerate() {
         for (column, sides) in across.windows(2).enumerate() {
             let colour = if (row + column) % 2 == 0 { LIGHT } else { DARK };
-            let corners = [at(rows[0], sides[0]), at(rows[0], sides[1]), at(rows[1], sides[1]), at(rows[1], sides[0])];
+            let corners =
+                [at(rows[0], sides[0]), at(rows[0], sides[1]), at(rows[1], sides[1]), at(rows[1], sides[0])];
             mesh.face(&[corners[0], corners[1], corners[2]], colour);
             mesh.face(&[corners[0], corners[2], corners[3]], colour);
         }
@@ -103,7 +108,8 @@ impl Line {
         let inner = poses.iter().map(|pose| pose.at);
         let points = ends.iter().map(|ends| ends.0).chain(inner).chain(ends.iter().map(|ends| ends.1));
         for point in points {
-            let step = line.points.last().map_or(0.0, |last: &Point| (point[0] - last[0]).hypot(point[1] - last[1]));
+            let step =
+                line.points.last().map_or(0.0, |last: &Point| (point[0] - last[0]).hypot(point[1] - last[1]));
             if line.points.is_empty() || step > 1e-3 {
                 line.from_start_m.push(line.length_m() + step);
                 line.points.push(point);
@@ -163,10 +169,18 @@ mod tests {
             })
             .sum();
         assert!((area - 8.0 * (95.0 + 24.0)).abs() < 1e-2, "{area}");
-        assert!(strip.mesh.positions.iter().zip(&strip.mesh.colours).all(|(at, colour)| {
-            !(at[0] > 0.1 && at[0] < 9.9) || *colour == LIGHT
-        }));
-        assert_eq!(strip.marks.iter().map(|mark| mark.1).collect::<Vec<_>>(), [0.0, 20.0, 40.0, 60.0, 80.0]);
+        assert!(
+            strip
+                .mesh
+                .positions
+                .iter()
+                .zip(&strip.mesh.colours)
+                .all(|(at, colour)| { !(at[0] > 0.1 && at[0] < 9.9) || *colour == LIGHT })
+        );
+        assert_eq!(
+            strip.marks.iter().map(|mark| mark.1).collect::<Vec<_>>(),
+            (0..10).map(|mark| f64::from(mark) * 10.0).collect::<Vec<_>>()
+        );
     }
 
     #[test]

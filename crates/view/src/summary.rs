@@ -43,7 +43,9 @@ mod tests {
         let forces = [ForceArrow { channel: "drag_n", label: "drag", axis: Axis::Backward }];
         let both = Scene { title: "Roll-out", forces: &forces, ..scene(&runs, &runs[..1]) };
         let text = summary(&both, 2000.0, Some(10.0));
-        for part in ["**Roll-out**", "2 runs, r1 to r2.", "measured", "1 m of arrow is 2.00 kN.", "every 10 m"] {
+        for part in
+            ["**Roll-out**", "2 runs, r1 to r2.", "measured", "1 m of arrow is 2.00 kN.", "every 10 m"]
+        {
             assert!(text.contains(part), "{part} is missing in {text}");
         }
         let text = summary(&scene(&runs[..1], &[]), 1.0, None);

@@ -66,7 +66,8 @@ mod tests {
     #[test]
     fn a_short_channel_stays_whole_but_for_what_is_no_number() {
         let thinned = thin(&[0.0, 1.0, 2.0, 3.0, 4.0], &[f64::NAN, 5.0, f64::NAN, f64::INFINITY, 7.0], 10);
-        let expected = Thinned { times_s: vec![1.0, 2.0, 4.0], lengths: vec![1, 0, 1], values: vec![5.0, 7.0] };
+        let expected =
+            Thinned { times_s: vec![1.0, 2.0, 4.0], lengths: vec![1, 0, 1], values: vec![5.0, 7.0] };
         assert_eq!(thinned, expected);
     }
 

@@ -48,12 +48,15 @@ pub(crate) fn wheel(body: &Body) -> Mesh {
         let rim = 0.58 * radius;
         let spoke = if step % 12 < 4 { SPOKE } else { RIM };
         let next = step + 1;
-        let tread = [at(step, outer, half), at(next, outer, half), at(next, outer, -half), at(step, outer, -half)];
+        let tread =
+            [at(step, outer, half), at(next, outer, half), at(next, outer, -half), at(step, outer, -half)];
         mesh.face(&tread, colour);
         for side in [-1.0, 1.0] {
             let (edge, inset) = (side * half, side * 0.8 * half);
-            let mut wall = [at(step, rim, edge), at(next, rim, edge), at(next, outer, edge), at(step, outer, edge)];
-            let mut lip = [at(step, rim, inset), at(next, rim, inset), at(next, rim, edge), at(step, rim, edge)];
+            let mut wall =
+                [at(step, rim, edge), at(next, rim, edge), at(next, outer, edge), at(step, outer, edge)];
+            let mut lip =
+                [at(step, rim, inset), at(next, rim, inset), at(next, rim, edge), at(step, rim, edge)];
             let mut disc = [[0.0, inset, 0.0], at(step, rim, inset), at(next, rim, inset)];
             if side < 0.0 {
                 wall.reverse();
@@ -107,17 +110,15 @@ pub(crate) fn body(body: &Body) -> Mesh {
         mesh.block([nose, y - 0.18 * slim, z], [nose + 0.04 * r, y + 0.18 * slim, z + 0.16 * r], LAMP);
     }
     let pipe = [cab_front + 0.25 * r, -slim, sill];
-    mesh.block(
-        [pipe[0], pipe[1] - 0.16 * r, pipe[2]],
-        [pipe[0] + 0.14 * r, pipe[1], height_m * 0.98],
-        IRON,
-    );
+    mesh.block([pipe[0], pipe[1] - 0.16 * r, pipe[2]], [pipe[0] + 0.14 * r, pipe[1], height_m * 0.98], IRON);
     // Cab: doors, glass that leans in, posts, roof.
     let wide = (width_m / 2.0 - 0.55 * tyre).max(slim);
     let door = sill + 0.22 * (height_m - sill);
     mesh.block([cab_rear, -wide, sill], [cab_front, wide, door], MODELLED);
     let top = height_m - 0.1 * r;
-    let square = |low_x: f64, high_x: f64, y: f64, z: f64| [[low_x, -y, z], [high_x, -y, z], [high_x, y, z], [low_x, y, z]];
+    let square = |low_x: f64, high_x: f64, y: f64, z: f64| {
+        [[low_x, -y, z], [high_x, -y, z], [high_x, y, z], [low_x, y, z]]
+    };
     mesh.tower(
         square(cab_rear, cab_front, wide, door),
         square(cab_rear + 0.12 * r, cab_front - 0.18 * r, wide * 0.86, top),
@@ -148,7 +149,12 @@ pub(crate) fn body(body: &Body) -> Mesh {
         for pair in angles.windows(2) {
             let [under, over] = [clear, clear + 0.06 * r].map(|radius| pair_at(&at, pair, radius));
             let plate = |[start, end]: [[f64; 2]; 2]| {
-                [[start[0], low, start[1]], [end[0], low, end[1]], [end[0], high, end[1]], [start[0], high, start[1]]]
+                [
+                    [start[0], low, start[1]],
+                    [end[0], low, end[1]],
+                    [end[0], high, end[1]],
+                    [start[0], high, start[1]],
+                ]
             };
             mesh.tower(plate(under), plate(over), MODELLED);
         }

@@ -8,7 +8,9 @@ use crate::path::{Path, Pose};
 use crate::recorder::Recorder;
 use crate::scene::Body;
 use crate::tractor;
-use rerun::{Angle, Color, LineStrips3D, Mesh3D, Points3D, Quaternion, Rgba32, RotationAxisAngle, Transform3D};
+use rerun::{
+    Angle, Color, LineStrips3D, Mesh3D, Points3D, Quaternion, Rgba32, RotationAxisAngle, Transform3D,
+};
 
 /// How much of what lies behind a recorded vehicle it hides, out of 255.
 const GHOST: u8 = 110;
@@ -43,7 +45,9 @@ pub(crate) fn surface(mesh: &Mesh) -> Mesh3D {
     Mesh3D::new(mesh.positions.iter().copied())
         .with_vertex_normals(mesh.normals.iter().copied())
         .with_triangle_indices(mesh.triangles.iter().copied())
-        .with_vertex_colors(mesh.colours.iter().map(|[red, green, blue]| Color::from_rgb(*red, *green, *blue)))
+        .with_vertex_colors(
+            mesh.colours.iter().map(|[red, green, blue]| Color::from_rgb(*red, *green, *blue)),
+        )
 }
 
 /// Draws the vehicle of a run along its path, under a name.
@@ -138,13 +142,8 @@ mod tests {
 
     #[test]
     fn a_wheel_turns_once_in_its_circumference() {
-        let pose = |travelled_m| Pose {
-            time_s: 0.0,
-            travelled_m,
-            at: [0.0; 3],
-            heading_rad: 0.0,
-            pitch_rad: 0.0,
-        };
+        let pose =
+            |travelled_m| Pose { time_s: 0.0, travelled_m, at: [0.0; 3], heading_rad: 0.0, pitch_rad: 0.0 };
         let quarter = std::f64::consts::FRAC_PI_2;
         assert!((roll_rad(&pose(quarter), 1.0) - quarter).abs() < 1e-12);
         assert!((roll_rad(&pose(5.0 * quarter), 1.0) - quarter).abs() < 1e-12);

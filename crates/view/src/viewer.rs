@@ -55,7 +55,8 @@ fn find(file: &Path, folders: Option<&OsStr>) -> Result<PathBuf, ViewError> {
 
 /// The first word that looks like a version: `rerun-cli 0.36.3 (…) …`.
 fn version(said: &str) -> Option<&str> {
-    said.split_whitespace().find(|word| word.split('.').count() == 3 && word.starts_with(|c: char| c.is_ascii_digit()))
+    said.split_whitespace()
+        .find(|word| word.split('.').count() == 3 && word.starts_with(|c: char| c.is_ascii_digit()))
 }
 
 /// Whether two versions agree in all but the last number.
@@ -99,8 +100,9 @@ mod tests {
     fn a_missing_viewer_is_named_with_its_version_and_how_to_get_it() {
         let empty = tempfile::tempdir().unwrap();
         let error = find(Path::new("run.rrd"), Some(empty.path().as_os_str())).unwrap_err().to_string();
-        let expected =
-            format!("no `rerun` on the PATH to show run.rrd with; `pip install rerun-sdk=={VIEWER_VERSION}` brings it");
+        let expected = format!(
+            "no `rerun` on the PATH to show run.rrd with; `pip install rerun-sdk=={VIEWER_VERSION}` brings it"
+        );
         assert_eq!(error, expected);
     }
 

@@ -1,0 +1,177 @@
+//! What a written file holds, read back with Rerun's own decoder.
+
+use headland_trace::{Origin, Run, Trace};
+use headland_view::{Axis, Body, ForceArrow, Scene, ViewError, write};
+use rerun::external::re_log_encoding::DecoderApp;
+use rerun::external::re_log_types::StoreKind;
+use rerun::log::{Chunk, LogMsg};
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::BufReader;
+use std::path::Path;
+
+const BODY: Body =
+    Body { length_m: 6.0, width_m: 3.0, height_m: 3.5, wheel_radius_m: 0.95, wheelbase_m: 3.3, track_m: 2.3 };
+const FORCES: [ForceArrow; 1] = [ForceArrow { channel: "drag_force_n", label: "drag", axis: Axis::Backward }];
+
+/// A run of 5000 samples, a tenth of a second apart, with one spike in its drag.
+fn run(id: &str, origin: Origin) -> Run {
+    let mut trace = Trace::new((0..5000).map(|index| f64::from(index) * 0.1).collect()).unwrap();
+    let mut drag = vec![100.0; 5000];
+    drag[3333] = 6500.0;
+    drag[4000] = f64::NAN;
+    trace.push("east_m", (0..5000).map(|index| f64::from(index) * 0.2).collect(), origin).unwrap();
+    trace.push("north_m", vec![7.0; 5000], origin).unwrap();
+    trace.push("speed_m_s", vec![2.0; 5000], origin).unwrap();
+    trace.push("drag_force_n", drag, origin).unwrap();
+    Run { id: id.to_owned(), trace }
+}
+
+struct Content {
+    /// The chunks of the recording, by entity.
+    recording: BTreeMap<String, Vec<Chunk>>,
+    layout: BTreeMap<String, Vec<Chunk>>,
+    activated: usize,
+}
+
+fn read(path: &Path) -> Content {
+    let mut content = Content { recording: BTreeMap::new(), layout: BTreeMap::new(), activated: 0 };
+    for message in DecoderApp::decode_eager(BufReader::new(File::open(path).unwrap())).unwrap() {
+        match message.unwrap() {
+            LogMsg::ArrowMsg(store, message) => {
+                let chunk = Chunk::from_arrow_msg(&message).unwrap();
+                let entity = chunk.entity_path().to_string();
+                let kind = match store.kind() {
+                    StoreKind::Recording => &mut content.recording,
+                    StoreKind::Blueprint => &mut content.layout,
+                };
+                kind.entry(entity).or_default().push(chunk);
+            }
+            LogMsg::BlueprintActivationCommand(command) => {
+                assert!(command.make_active && command.make_default);
+                content.activated += 1;
+            }
+            LogMsg::SetStoreInfo(_) => {}
+        }
+    }
+    content
+}
+
+impl Content {
+    /// The times [s] of the rows of an entity.
+    fn times_s(&self, entity: &str) -> Vec<f64> {
+        let chunks = self
+            .recording
+            .get(entity)
+            .unwrap_or_else(|| panic!("no `{entity}` among {:?}", self.recording.keys().collect::<Vec<_>>()));
+        let timelines = chunks.iter().flat_map(|chunk| chunk.timelines().values());
+        let mut times = Vec::new();
+        for timeline in timelines {
+            assert_eq!(timeline.name(), "time", "the only timeline");
+            times.extend(timeline.times_raw().iter().map(|nanoseconds| *nanoseconds as f64 / 1e9));
+        }
+        times
+    }
+
+    /// The numbers of a plotted line.
+    fn line(&self, entity: &str) -> Vec<f64> {
+        let scalars = "Scalars:scalars".into();
+        let chunks = self.recording[entity].iter();
+        chunks
+            .flat_map(|chunk| chunk.iter_slices::<f64>(scalars).flatten().copied().collect::<Vec<_>>())
+            .collect()
+    }
+}
+
+fn written(scene: &Scene) -> Content {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.rrd");
+    write(scene, &path).unwrap();
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "no part is left");
+    read(&path)
+}
+
+fn scene<'a>(runs: &'a [Run], measured: &'a [Run]) -> Scene<'a> {
+    Scene { title: "Roll-out", runs, measured, forces: &FORCES, vehicle: BODY, ground: None }
+}
+
+#[test]
+fn a_run_has_a_vehicle_arrows_and_lines_on_one_timeline_in_seconds() {
+    let content = written(&scene(&[run("r1", Origin::Predicted)], &[]));
+    let times = content.times_s("/world/runs/r1/modelled/vehicle");
+    assert!(times.len() > 1000 && times.len() <= 2000, "{}", times.len());
+    assert_eq!((times[0], times[times.len() - 1]), (0.0, 499.9));
+    assert_eq!(content.times_s("/world/runs/r1/modelled/vehicle/wheels/front_left").len(), times.len());
+    assert!(
+        content.times_s("/world/runs/r1/modelled/vehicle/body").is_empty(),
+        "the mesh is there at any time"
+    );
+    let arrows = content.times_s("/world/runs/r1/modelled/vehicle/forces/drag_force_n");
+    assert!(arrows.contains(&333.3), "the arrow of the spike is drawn");
+    assert!(content.recording.contains_key("/world/ground/r1"));
+}
+
+#[test]
+fn a_line_keeps_its_spike_and_leaves_out_what_is_no_number() {
+    let content = written(&scene(&[run("r1", Origin::Predicted)], &[]));
+    let line = content.line("/channels/r1/drag_force_n/modelled");
+    assert!(line.len() <= 2000 && line.contains(&6500.0) && line.iter().all(|value| value.is_finite()));
+}
+
+#[test]
+fn a_recording_brings_a_second_vehicle_second_lines_and_a_residual() {
+    let mut recording = run("r1", Origin::Measured);
+    let faster =
+        recording.trace.remove("speed_m_s").unwrap().values.iter().map(|speed| speed + 0.25).collect();
+    recording.trace.push("speed_m_s", faster, Origin::Measured).unwrap();
+    let content = written(&scene(&[run("r1", Origin::Predicted)], &[recording]));
+    assert!(!content.times_s("/world/runs/r1/measured/vehicle").is_empty());
+    assert!(content.line("/channels/r1/speed_m_s/measured").iter().all(|speed| *speed == 2.25));
+    assert!(content.line("/channels/r1/speed_m_s/modelled").iter().all(|speed| *speed == 2.0));
+    let residual = content.line("/channels/r1/speed_m_s/residual");
+    assert!(!residual.is_empty() && residual.iter().all(|residual| *residual == 0.25));
+}
+
+#[test]
+fn a_channel_that_the_model_was_given_is_drawn_once() {
+    let content = written(&scene(&[run("r1", Origin::Driven)], &[run("r1", Origin::Measured)]));
+    assert!(content.recording.contains_key("/channels/r1/speed_m_s/modelled"));
+    assert!(!content.recording.contains_key("/channels/r1/speed_m_s/measured"));
+    assert!(!content.recording.contains_key("/channels/r1/speed_m_s/residual"));
+}
+
+#[test]
+fn several_runs_have_a_vehicle_and_a_tab_each() {
+    let one = written(&scene(&[run("r1", Origin::Predicted)], &[]));
+    let runs = [run("r1", Origin::Predicted), run("a/b", Origin::Predicted)];
+    let two = written(&scene(&runs, &[]));
+    for entity in ["/world/runs/r1/modelled/vehicle", r"/world/runs/a\/b/modelled/vehicle"] {
+        assert_eq!(two.times_s(entity).len(), one.times_s("/world/runs/r1/modelled/vehicle").len());
+    }
+    let views =
+        |content: &Content| content.layout.keys().filter(|entity| entity.ends_with("/ViewContents")).count();
+    // Vehicle, text, speed, force, length; with two runs the speeds of both, and three plots more.
+    assert_eq!((views(&one), views(&two)), (5, 9));
+}
+
+#[test]
+fn the_layout_is_put_into_force_once_and_the_eye_follows_the_first_vehicle() {
+    let content = written(&scene(&[run("r1", Origin::Predicted)], &[]));
+    assert_eq!(content.activated, 1);
+    assert!(content.layout.contains_key("/viewport") && content.layout.contains_key("/time_panel"));
+    assert!(content.layout.keys().any(|entity| entity.ends_with("/EyeControls3D")));
+    assert!(content.recording.contains_key("/world/runs/r1/modelled/vehicle/reach"));
+}
+
+#[test]
+fn a_path_that_cannot_be_written_is_refused_by_name_and_leaves_nothing() {
+    let runs = [run("r1", Origin::Predicted)];
+    let folder = tempfile::tempdir().unwrap();
+    let missing = folder.path().join("missing").join("run.rrd");
+    let error = write(&scene(&runs, &[]), &missing).unwrap_err();
+    assert!(matches!(&error, ViewError::File { path, .. } if *path == missing), "{error}");
+    let taken = folder.path().join("run.rrd");
+    fs::create_dir(&taken).unwrap();
+    assert!(matches!(write(&scene(&runs, &[]), &taken), Err(ViewError::File { .. })));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "only the folder is left");
+}

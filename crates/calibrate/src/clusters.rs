@@ -195,9 +195,14 @@ impl Bootstrap {
         self.enough().then_some([estimate - high * error, estimate - low * error])
     }
 
-    /// A tail of 2.5 % needs a few replicates in it.
+    /// Number of replicates drawn.
+    pub fn replicates(&self) -> usize {
+        self.draws.len() + self.singular
+    }
+
+    /// A tail of 2.5 % needs a few replicates in it, and those that failed are no random choice.
     fn enough(&self) -> bool {
-        self.draws.len() >= 200
+        self.draws.len() >= 200 && 20 * self.singular <= self.draws.len()
     }
 }
 

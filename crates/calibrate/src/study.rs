@@ -44,6 +44,9 @@ pub enum StudyError {
         /// The scenario.
         path: std::path::PathBuf,
     },
+    /// [`Study::stop`] said so.
+    #[error("interrupted")]
+    Interrupted,
     /// A trace does not come together: a bug.
     #[error(transparent)]
     Trace(#[from] TraceError),
@@ -79,6 +82,8 @@ pub struct Study<'a> {
     paths: Vec<String>,
     /// What was decided on the way, for people.
     pub notes: Vec<String>,
+    /// Asked before each replay whether to give up.
+    pub stop: fn() -> bool,
 }
 
 /// Half width of the local fit of recorded speed, in samples, where the scenario does not say.
@@ -102,7 +107,8 @@ impl<'a> Study<'a> {
         let mut notes = Vec::new();
         let mut runs = Vec::new();
         for run in &recording.runs {
-            runs.push(measured(scenario, &model, run, &mut notes)?);
+            let length_m = path_length_m(recording, run.path.as_deref());
+            runs.push(measured(scenario, &model, run, length_m, &mut notes)?);
         }
         let mut parameters = Vec::new();
         let mut paths = Vec::new();
@@ -123,7 +129,7 @@ impl<'a> Study<'a> {
             paths.push(free.path.clone());
         }
         notes.dedup();
-        Ok(Self { scenario, registry, runs, parameters, paths, notes })
+        Ok(Self { scenario, registry, runs, parameters, paths, notes, stop: || false })
     }
 
     /// The scenario.
@@ -158,6 +164,9 @@ impl<'a> Study<'a> {
     /// # Errors
     /// [`StudyError`].
     pub fn replay(&self, run: &Measured, values: &[f64]) -> Result<Outcome, StudyError> {
+        if (self.stop)() {
+            return Err(StudyError::Interrupted);
+        }
         let model = self.model(run, values)?;
         let mut outcome = replay(&model, &run.trace, &run.how)
             .map_err(|error| StudyError::Replay { run: run.id.clone(), error })?;
@@ -287,6 +296,7 @@ fn measured(
     scenario: &Scenario,
     model: &Model,
     run: &RecordedRun,
+    length_m: f64,
     notes: &mut Vec<String>,
 ) -> Result<Measured, StudyError> {
     let mut trace = run.trace.clone();
@@ -322,9 +332,27 @@ fn measured(
             wanted: wanted.iter().map(|name| (*name).to_owned()).collect(),
         });
     }
-    let how = Replay { drive, also, window_s, smoothing_s, step_s: settings.step_s };
+    let reversed_from_m = run.reversed.then(|| match trace.get("position_m") {
+        // Positions that fall are those of the path itself; those that grow begin at its end.
+        Some([first, .., last]) if last < first => *first,
+        _ => length_m,
+    });
+    let how = Replay { drive, also, window_s, smoothing_s, step_s: settings.step_s, reversed_from_m };
     let compared = compared(&trace, smoothing_s, settings.least_acceleration_m_s2);
     Ok(Measured { id: run.id.clone(), trace, how, signals, held_out: run.held_out, known, compared })
+}
+
+/// How far the farthest run of a path came [m].
+fn path_length_m(recording: &Recording, path: Option<&str>) -> f64 {
+    let of_run = |run: &RecordedRun| match (run.trace.get("position_m"), run.trace.get("speed_m_s")) {
+        (Some(position), _) => position.iter().copied().filter(|value| value.is_finite()).fold(0.0, f64::max),
+        (None, Some(speed)) => {
+            let steps = run.trace.time_s().windows(2).zip(speed.windows(2));
+            steps.map(|(time, speed)| 0.5 * (speed[0] + speed[1]) * (time[1] - time[0])).filter(|m| m.is_finite()).sum()
+        }
+        _ => 0.0,
+    };
+    recording.runs.iter().filter(|run| run.path.as_deref() == path).map(of_run).fold(0.0, f64::max)
 }
 
 /// What can drive the model best: rolling free, a recorded force, a recorded torque, and else the speed.
@@ -379,7 +407,7 @@ fn signals(drive: Drive) -> &'static [&'static str] {
 
 /// Those that the model's driveline shows at all.
 fn predicted(signals: Vec<String>, model: &Model, trace: &Trace) -> Vec<String> {
-    let how = Replay { drive: Drive::Speed, also: Vec::new(), window_s: None, smoothing_s: 1.0, step_s: 1.0 };
+    let how = Replay { drive: Drive::Speed, also: Vec::new(), window_s: None, smoothing_s: 1.0, step_s: 1.0, reversed_from_m: None };
     let times = trace.time_s();
     let Some(first) = times.first() else { return Vec::new() };
     let probe = trace.slice(*first, times.get(9).copied().unwrap_or(*first));

@@ -8,7 +8,8 @@ fn main() -> Result<(), headland_recording::RecordingError> {
         let recording = headland_recording::load(Path::new(&argument))?;
         println!("{argument}: {}", recording.about);
         for run in &recording.runs {
-            let channels: Vec<&str> = run.trace.channels().iter().map(|channel| channel.name.as_str()).collect();
+            let channels: Vec<&str> =
+                run.trace.channels().iter().map(|channel| channel.name.as_str()).collect();
             println!(
                 "  {}: {} rows, {:.1} s, {}",
                 run.id,

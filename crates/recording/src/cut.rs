@@ -1,6 +1,7 @@
 //! Cutting a log into runs: by the stretches that are named, or where it was put together without saying so.
 
 use crate::describe::{Segment, Split};
+use crate::look::counted;
 use crate::{Notice, NoticeKind};
 use headland_trace::Trace;
 
@@ -44,10 +45,11 @@ pub(crate) fn pieces(
         start = end;
     }
     if !cuts.is_empty() {
-        let mut text = format!("the log is cut at {} places, the first at {} s", cuts.len(), time[cuts[0]]);
+        let mut text =
+            format!("the log is cut at {}, the first at {} s", counted(cuts.len(), "place"), time[cuts[0]]);
         if left_out > 0 {
             let shortest = split.shortest_s.unwrap_or(SHORTEST_S);
-            text = format!("{text}; {left_out} pieces shorter than {shortest} s are left out");
+            text = format!("{text}; {} shorter than {shortest} s left out", counted(left_out, "piece"));
         }
         notices.push(Notice::new(run, NoticeKind::Split, text).count(cuts.len()).first(time[cuts[0]]));
     }
@@ -85,7 +87,7 @@ mod tests {
         let split = Split { speed_jump_m_s: Some(3.0), gap_s: Some(5.0), shortest_s: None };
         let mut notices = Vec::new();
         assert_eq!(pieces(&drive(), &[], Some(&split), "r", &mut notices).len(), 2);
-        assert!(notices[0].text.contains("1 pieces shorter than 10 s"), "{}", notices[0].text);
+        assert!(notices[0].text.contains("1 piece shorter than 10 s"), "{}", notices[0].text);
     }
 
     #[test]

@@ -166,7 +166,7 @@ mod tests {
         assert_eq!(places.find("runs[1].id"), (4, 26));
         assert_eq!(places.find("runs[1].segments[0].to_s"), (4, 62));
         assert_eq!(places.find("format.delimiter"), (5, 26));
-        assert_eq!(places.find("known"), (5, 47));
+        assert_eq!(places.find("known"), (5, 48));
         assert_eq!(places.find("runs[0].missing"), places.find("runs[0]"));
     }
 }

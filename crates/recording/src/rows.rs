@@ -26,7 +26,7 @@ pub(crate) struct Rows<'a> {
     table: Table,
     numbers_seen: Vec<bool>,
     read: usize,
-    origin_s: Option<f64>,
+    origin: Option<f64>,
     repeats: usize,
     first_repeat: (f64, usize),
     without_values: usize,
@@ -43,7 +43,7 @@ impl<'a> Rows<'a> {
             table: Table { time_s: Vec::new(), columns: vec![Some(Vec::new()); outputs] },
             numbers_seen: vec![false; outputs],
             read: 0,
-            origin_s: None,
+            origin: None,
             repeats: 0,
             first_repeat: (0.0, 0),
             without_values: 0,
@@ -109,10 +109,9 @@ impl<'a> Rows<'a> {
         let mut now_s = self
             .plan
             .time
-            .seconds(self.read, comma, |column| &record[column])
+            .read(self.read, comma, |column| &record[column])
             .map_err(|(column, expected)| self.cell(record, line, column, expected))?;
-        let starts_at_zero = self.plan.time.starts_at_zero();
-        now_s -= *self.origin_s.get_or_insert(if starts_at_zero { now_s } else { 0.0 });
+        now_s = self.plan.time.since(*self.origin.get_or_insert(now_s), now_s);
         self.read += 1;
         if let Some(before_s) = self.table.time_s.last().copied() {
             now_s = self.plan.time.after(before_s, now_s);
@@ -178,7 +177,7 @@ impl<'a> Rows<'a> {
     fn tell(&self, notices: &mut Vec<Notice>) {
         if self.repeats > 0 {
             let mut text = format!(
-                "{} rows repeat the time of the row before and are left out; the first is line {}",
+                "rows that repeat the time of the row before are left out: {}, the first in line {}",
                 self.repeats, self.first_repeat.1
             );
             if self.repeats > self.table.time_s.len() {
@@ -190,7 +189,7 @@ impl<'a> Rows<'a> {
             notices.push(notice.first(self.first_repeat.0));
         }
         if self.without_values > 0 {
-            let text = format!("{} rows hold nothing and are left out", self.without_values);
+            let text = format!("rows without any value are left out: {}", self.without_values);
             notices.push(Notice::new(self.run, NoticeKind::Nan, text).count(self.without_values));
         }
     }

@@ -66,7 +66,7 @@ pub(crate) fn open(
     let count = fill(&mut body, &mut bytes).map_err(|error| failed(path, 0, &error))?;
     bytes.truncate(count);
     let encoding = match encoding {
-        Some(label) => Encoding::for_label(label.as_bytes()).ok_or_else(|| RecordingError::Value {
+        Some(label) => named(label).ok_or_else(|| RecordingError::Value {
             at: encoding_at.clone(),
             field: "encoding".to_owned(),
             found: format!("`{label}`"),
@@ -89,6 +89,12 @@ pub(crate) fn open(
     // The decoder gives UTF-8, and a line's end is no part of a character.
     let start = String::from_utf8_lossy(&start).into_owned();
     Ok(Source::Text(Box::new(Text { start, rest, after, encoding: encoding.name(), gzip })))
+}
+
+/// The encoding of a name, as the web spells it or with other dashes.
+fn named(label: &str) -> Option<&'static Encoding> {
+    let bare = label.replace(['-', '_', ' '], "");
+    Encoding::for_label(label.as_bytes()).or_else(|| Encoding::for_label(bare.as_bytes()))
 }
 
 /// What stopped the reading of a log, as an error at a line.

@@ -61,13 +61,19 @@ impl TimePlan {
         }
     }
 
-    /// Whether its zero is far away, so that a run's first row becomes zero.
-    pub fn starts_at_zero(&self) -> bool {
-        !matches!(self, Self::Period(_) | Self::Number { epoch: false, .. })
+    /// The time that a row tells, from a row that told `origin`: to the microsecond where both are far from zero, as
+    /// more digits of a date are not held by a double.
+    pub fn since(&self, origin: f64, now: f64) -> f64 {
+        match *self {
+            Self::Number { unit_s, epoch: false, .. } => now * unit_s + 0.0,
+            Self::Number { unit_s, .. } => microseconds((now - origin) * unit_s),
+            Self::Period(_) => now,
+            _ => microseconds(now - origin),
+        }
     }
 
-    /// Seconds that a row tells; the column that does not, and what was expected of it.
-    pub fn seconds<'a>(
+    /// What a row tells, in its own unit; the column that does not, and what was expected of it.
+    pub fn read<'a>(
         &self,
         row: usize,
         comma: bool,
@@ -75,8 +81,8 @@ impl TimePlan {
     ) -> Result<f64, (usize, &'static str)> {
         match *self {
             Self::Period(period_s) => Ok(row as f64 * period_s),
-            Self::Number { column, unit_s, .. } => match number(cell(column), comma) {
-                Cell::Number(value) => Ok(value * unit_s + 0.0),
+            Self::Number { column, .. } => match number(cell(column), comma) {
+                Cell::Number(value) => Ok(value),
                 _ => Err((column, "a time as a number")),
             },
             Self::DateTime { column, order } => date_time_s(cell(column), order)
@@ -170,6 +176,10 @@ impl TimePlan {
         let order = order(wanted.order, column, columns, sample, whole)?;
         Ok(Self::DateTime { column, order })
     }
+}
+
+fn microseconds(seconds: f64) -> f64 {
+    (seconds * 1e6).round() / 1e6
 }
 
 /// The column whose header means time: `time_s`, else the first of the names that are known.

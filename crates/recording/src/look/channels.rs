@@ -1,8 +1,9 @@
 //! What one channel shows: missing, stuck, coarse, jumping.
 
-use super::{median, short, speed};
+use super::{counted, median, short, speed};
 use crate::{Notice, NoticeKind};
 use headland_trace::{Channel, Trace};
+use std::f64::consts::PI;
 
 /// Speed cannot change by more than this from one row to the next [m/s].
 const JUMP_M_S: f64 = 3.0;
@@ -58,9 +59,9 @@ pub(super) fn jumps(trace: &Trace, run: &str, notices: &mut Vec<Notice>) {
             (1..values.len()).filter(|row| (values[*row] - values[row - 1]).abs() > JUMP_M_S).collect();
         let Some(first) = jumps.first() else { continue };
         let text = format!(
-            "`{name}` changes by more than {JUMP_M_S} m/s from one row to the next at {} places; first from {} to {} m/s \
+            "`{name}` changes by more than {JUMP_M_S} m/s from one row to the next at {}; first from {} to {} m/s \
              at {} s",
-            jumps.len(),
+            counted(jumps.len(), "place"),
             short(values[first - 1]),
             short(values[*first]),
             short(trace.time_s()[*first])
@@ -70,26 +71,46 @@ pub(super) fn jumps(trace: &Trace, run: &str, notices: &mut Vec<Notice>) {
     }
 }
 
-/// Tells a channel that never changes, or that rests although it otherwise changes with every row. Whether it did the
-/// former.
-pub(super) fn stuck(trace: &Trace, channel: &Channel, run: &str, notices: &mut Vec<Notice>) -> bool {
-    let (time, values) = (trace.time_s(), &channel.values);
-    if SLOW.iter().any(|slow| channel.name.to_lowercase().contains(slow)) || values.len() < STUCK_ROWS {
-        return false;
+/// Quantities whose values go round: the difference of two is the shorter way.
+const ROUND: &[&str] = &["heading", "direction", "angle", "yaw_rad"];
+
+/// Whether a quantity may rest while the vehicle moves.
+fn is_slow(channel: &Channel) -> bool {
+    let name = channel.name.to_lowercase();
+    SLOW.iter().any(|slow| name.contains(slow))
+}
+
+/// Whether the vehicle moves in a row; where there is no speed it is taken to.
+fn moves(trace: &Trace, row: usize) -> bool {
+    speed(trace).is_none_or(|speed| speed[row].abs() > MOVING_M_S)
+}
+
+/// Tells channels that hold one value throughout a log in which the vehicle moves.
+pub(super) fn constant(trace: &Trace, run: &str, notices: &mut Vec<Notice>) {
+    if trace.len() < STUCK_ROWS || !(0..trace.len()).any(|row| moves(trace, row)) {
+        return;
     }
-    let moving = |row: usize| speed(trace).is_none_or(|speed| speed[row].abs() > MOVING_M_S);
-    if !values[0].is_nan() && values.iter().all(|value| *value == values[0]) {
-        if (0..values.len()).any(moving) {
-            let text = format!("`{}` is {} throughout", channel.name, short(values[0]));
-            let notice = Notice::new(run, NoticeKind::Stuck, text).channel(&channel.name).count(values.len());
-            notices.push(notice.first(time[0]));
+    for channel in trace.channels().iter().filter(|channel| !is_slow(channel)) {
+        let first = channel.values[0];
+        if channel.values.iter().all(|value| *value == first) {
+            let text = format!("`{}` is {} throughout", channel.name, short(first));
+            let notice = Notice::new(run, NoticeKind::Stuck, text).channel(&channel.name).count(trace.len());
+            notices.push(notice.first(trace.time_s()[0]));
         }
-        return true;
     }
+}
+
+/// Tells a channel that rests although it otherwise changes with most rows.
+pub(super) fn stuck(trace: &Trace, channel: &Channel, run: &str, notices: &mut Vec<Notice>) {
+    let (time, values) = (trace.time_s(), &channel.values);
+    if is_slow(channel) || values.len() < STUCK_ROWS {
+        return;
+    }
+    let moving = |row: usize| moves(trace, row);
     let changes = (1..values.len()).filter(|row| values[*row] != values[row - 1] && moving(*row)).count();
     let rows = (1..values.len()).filter(|row| moving(*row)).count();
     if (changes as f64) < 0.5 * rows as f64 {
-        return false;
+        return;
     }
     let mut longest = (0, 0);
     let (mut count, mut found, mut start) = (0, None, 0);
@@ -111,24 +132,27 @@ pub(super) fn stuck(trace: &Trace, channel: &Channel, run: &str, notices: &mut V
     if let Some(first) = found {
         let held_s = time[longest.0 + longest.1 - 1] - time[longest.0];
         let text = format!(
-            "`{}` rests at {} for {} s from {} s while the vehicle moves; {count} such stretches",
+            "`{}` rests at {} for {} s from {} s while the vehicle moves; {} like this",
             channel.name,
             short(values[longest.0]),
             short(held_s),
-            short(time[longest.0])
+            short(time[longest.0]),
+            counted(count, "stretch")
         );
         notices.push(
             Notice::new(run, NoticeKind::Stuck, text).channel(&channel.name).count(count).first(time[first]),
         );
     }
-    false
 }
 
 /// Tells single samples that stand far away from both their neighbours.
 pub(super) fn spikes(trace: &Trace, channel: &Channel, run: &str, notices: &mut Vec<Notice>) {
     let values = &channel.values;
+    let round = channel.name.ends_with("_rad") && ROUND.iter().any(|name| channel.name.contains(name));
+    let step =
+        |from: f64, to: f64| if round { (to - from + PI).rem_euclid(2.0 * PI) - PI } else { to - from };
     let steps: Vec<f64> =
-        values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0).collect();
+        values.windows(2).map(|pair| step(pair[0], pair[1]).abs()).filter(|step| *step > 0.0).collect();
     let usual = median(steps);
     let mut sorted: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -139,15 +163,15 @@ pub(super) fn spikes(trace: &Trace, channel: &Channel, run: &str, notices: &mut 
     let height = (SPIKE_STEPS * usual).max(SPIKE_SHARE * range);
     let spikes: Vec<usize> = (1..values.len() - 1)
         .filter(|row| {
-            let (before, after) = (values[*row] - values[row - 1], values[*row] - values[row + 1]);
+            let (before, after) = (step(values[row - 1], values[*row]), step(values[row + 1], values[*row]));
             before * after > 0.0 && before.abs().min(after.abs()) > height && height > 0.0
         })
         .collect();
     if let Some(first) = spikes.first() {
         let text = format!(
-            "`{}` has {} single samples far from both neighbours; first {} between {} and {} at {} s",
+            "`{}` has {} far from both neighbours; first {} between {} and {} at {} s",
             channel.name,
-            spikes.len(),
+            counted(spikes.len(), "single sample"),
             short(values[*first]),
             short(values[first - 1]),
             short(values[first + 1]),
@@ -160,11 +184,14 @@ pub(super) fn spikes(trace: &Trace, channel: &Channel, run: &str, notices: &mut 
 
 /// Tells a channel that changes seldom and in steps.
 pub(super) fn coarse(trace: &Trace, channel: &Channel, run: &str, notices: &mut Vec<Notice>) {
+    if is_slow(channel) {
+        return;
+    }
     let values = &channel.values;
     let mut levels: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
     levels.sort_unstable_by(f64::total_cmp);
     levels.dedup();
-    let moving = |row: usize| speed(trace).is_none_or(|speed| speed[row].abs() > MOVING_M_S);
+    let moving = |row: usize| moves(trace, row);
     let rows = (1..values.len()).filter(|row| moving(*row)).count();
     let steps: Vec<f64> = (1..values.len())
         .filter(|row| moving(*row))

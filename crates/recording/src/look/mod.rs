@@ -5,33 +5,75 @@ mod pairs;
 mod standstill;
 mod time_base;
 
-use crate::{Notice, RecordedRun};
+use crate::{Notice, NoticeKind, RecordedRun};
 use headland_trace::Trace;
 
 /// Looks at a whole log before it is cut.
 pub(crate) fn at_log(trace: &Trace, run: &str, notices: &mut Vec<Notice>) {
     time_base::gaps(trace, run, notices);
     channels::missing(trace, run, notices);
+    channels::constant(trace, run, notices);
 }
 
 /// Looks at one run.
 pub(crate) fn at_run(trace: &Trace, run: &str, notices: &mut Vec<Notice>) {
     channels::jumps(trace, run, notices);
     for channel in trace.channels() {
-        let stuck = channels::stuck(trace, channel, run, notices);
-        if !stuck {
-            channels::spikes(trace, channel, run, notices);
-            channels::coarse(trace, channel, run, notices);
-        }
+        channels::stuck(trace, channel, run, notices);
+        channels::spikes(trace, channel, run, notices);
+        channels::coarse(trace, channel, run, notices);
     }
     pairs::duplicates(trace, run, notices);
     pairs::sign(trace, run, notices);
     pairs::torque_against_speed(trace, run, notices);
+    pairs::battery_against_motor(trace, run, notices);
 }
 
 /// Looks at what runs have in common.
 pub(crate) fn at_recording(runs: &[RecordedRun], notices: &mut Vec<Notice>) {
     standstill::offsets(runs, notices);
+    merge(notices);
+}
+
+/// What is told of one channel in run after run, and is a matter of how it is logged, is told once.
+fn merge(notices: &mut Vec<Notice>) {
+    let mut merged: Vec<(Notice, usize)> = Vec::new();
+    for notice in notices.drain(..) {
+        let alike = matches!(
+            notice.kind,
+            NoticeKind::Text
+                | NoticeKind::Assumed
+                | NoticeKind::Coarse
+                | NoticeKind::Duplicate
+                | NoticeKind::Sign
+        );
+        let known = merged.iter_mut().find(|(known, _)| {
+            alike && known.kind == notice.kind && known.channel == notice.channel && known.run != notice.run
+        });
+        match known {
+            Some((known, runs)) => {
+                known.count += notice.count;
+                *runs += 1;
+            }
+            None => merged.push((notice, 1)),
+        }
+    }
+    notices.extend(merged.into_iter().map(|(mut notice, runs)| {
+        if runs > 1 {
+            notice.text = format!("{} (likewise in {})", notice.text, counted(runs - 1, "other run"));
+        }
+        notice
+    }));
+}
+
+/// `1 place`, `3 places`.
+pub(crate) fn counted(count: usize, what: &str) -> String {
+    let ending = match (count, what.ends_with("ch")) {
+        (1, _) => "",
+        (_, true) => "es",
+        _ => "s",
+    };
+    format!("{count} {what}{ending}")
 }
 
 /// The speed that a log has: over ground, else of the wheels.

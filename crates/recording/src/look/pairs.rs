@@ -14,6 +14,10 @@ const MISFITS: f64 = 0.4;
 /// A delay that is worth telling [s], and how far it is looked for.
 const LEAST_LAG_S: f64 = 0.3;
 const MOST_LAG_S: f64 = 3.0;
+/// Powers part where they differ by so many usual differences, by this share of the largest, in so many rows.
+const PARTED: f64 = 3.0;
+const PARTED_SHARE: f64 = 0.1;
+const PARTED_ROWS: usize = 20;
 /// How much better the shifted channels have to agree.
 const BETTER: f64 = 0.05;
 
@@ -116,6 +120,52 @@ pub(super) fn torque_against_speed(trace: &Trace, run: &str, notices: &mut Vec<N
         notices.push(Notice::new(run, NoticeKind::Lag, text).channel(name).count(bad.len()).first(*first));
     }
     lag(name, torque, &slope, step, run, notices);
+}
+
+/// Tells rows in which what the battery gives and what the motor does part, beyond what a run's own spread explains.
+pub(super) fn battery_against_motor(trace: &Trace, run: &str, notices: &mut Vec<Notice>) {
+    let (Some(current), Some(voltage), Some(torque), Some(speed)) = (
+        trace.get("battery_current_a"),
+        trace.get("battery_voltage_v"),
+        trace.get("motor_torque_n_m"),
+        trace.get("speed_m_s"),
+    ) else {
+        return;
+    };
+    let battery: Vec<f64> = current.iter().zip(voltage).map(|(current, voltage)| current * voltage).collect();
+    let motor: Vec<f64> = torque.iter().zip(speed).map(|(torque, speed)| torque * speed).collect();
+    let Some((slope, zero)) = straight(&motor, &battery) else { return };
+    let rest: Vec<f64> =
+        motor.iter().zip(&battery).map(|(motor, battery)| battery - zero - slope * motor).collect();
+    let usual = median(rest.iter().map(|rest| rest.abs()).collect());
+    let size =
+        battery.iter().filter(|power| !power.is_nan()).fold(0.0_f64, |most, power| most.max(power.abs()));
+    let limit = (PARTED * usual).max(PARTED_SHARE * size);
+    let rows: Vec<usize> = (0..rest.len()).filter(|row| rest[*row].abs() > limit).collect();
+    let Some(first) = rows.first() else { return };
+    if rows.len() < PARTED_ROWS {
+        return;
+    }
+    let text = format!(
+        "battery power and motor torque times speed part by more than {} W in {} rows, first at {} s: one of them is late \
+         or wrong there",
+        short(limit.round()),
+        rows.len(),
+        short(trace.time_s()[*first])
+    );
+    let notice = Notice::new(run, NoticeKind::Lag, text).channel("motor_torque_n_m").count(rows.len());
+    notices.push(notice.first(trace.time_s()[*first]));
+}
+
+/// Slope and zero of the straight line through points, by least squares.
+fn straight(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
+    let pairs = || x.iter().zip(y).filter(|(x, y)| !x.is_nan() && !y.is_nan());
+    let count = pairs().count() as f64;
+    let (mean_x, mean_y) =
+        (pairs().map(|(x, _)| x).sum::<f64>() / count, pairs().map(|(_, y)| y).sum::<f64>() / count);
+    let xx: f64 = pairs().map(|(x, _)| (x - mean_x).powi(2)).sum();
+    let xy: f64 = pairs().map(|(x, y)| (x - mean_x) * (y - mean_y)).sum();
+    (xx > 0.0).then(|| (xy / xx, mean_y - mean_x * xy / xx))
 }
 
 /// Tells a delay between a torque and its acceleration. Both are shifted by whole rows.
@@ -226,6 +276,21 @@ mod tests {
         sign(&trace, "r", &mut notices);
         assert_eq!(notices.len(), 1);
         assert_eq!(notices[0].kind, NoticeKind::Sign);
+    }
+
+    /// For 2 s the current says that nothing is drawn while the motor drives.
+    #[test]
+    fn powers_that_part_are_told() {
+        let mut trace = drive(0.0, 0.0);
+        let (torque, speed) = (trace.get("motor_torque_n_m").unwrap(), trace.get("speed_m_s").unwrap());
+        let current =
+            |row: usize| if (10..30).contains(&row) { 0.0 } else { torque[row] * speed[row] / 40.0 + 1.0 };
+        let current: Vec<f64> = (0..trace.len()).map(current).collect();
+        trace.push("battery_current_a", current, Origin::Measured).unwrap();
+        trace.push("battery_voltage_v", vec![400.0; 3000], Origin::Measured).unwrap();
+        let mut notices = Vec::new();
+        battery_against_motor(&trace, "r", &mut notices);
+        assert_eq!((notices[0].count, notices[0].first_s), (20, Some(1.0)), "{notices:?}");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Holes in a time base.
 
-use super::{median, short};
+use super::{counted, median, short};
 use crate::{Notice, NoticeKind};
 use headland_trace::Trace;
 
@@ -20,8 +20,8 @@ pub(super) fn gaps(trace: &Trace, run: &str, notices: &mut Vec<Notice>) {
     let longest = gaps.iter().fold(*first, |best, gap| if gap.1 > best.1 { *gap } else { best });
     let total: f64 = gaps.iter().map(|gap| gap.1).sum();
     let text = format!(
-        "{} gaps in time, {} s in all; the longest, {} s, starts at {} s (rows are {} s apart)",
-        gaps.len(),
+        "{} in time, {} s in all; the longest, {} s, starts at {} s (rows are {} s apart)",
+        counted(gaps.len(), "gap"),
         short(total),
         short(longest.1),
         short(longest.0),

@@ -135,6 +135,15 @@ class Browser:
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self.call("Emulation.setEmulatedMedia", features=[scheme])
 
+    def settle(self):
+        """Waits until the page has drawn all of its plots after a change of its window."""
+        time.sleep(0.5)
+        deadline = time.monotonic() + PATIENCE
+        while self.value_of("document.body.dataset.drawn") != "all":
+            if time.monotonic() > deadline:
+                raise TimeoutError("the page does not finish its plots")
+            time.sleep(0.1)
+
     def shoot(self, path):
         shot = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=True)
         path.write_bytes(base64.b64decode(shot["data"]))
@@ -170,7 +179,7 @@ def check(browser, page, shots):
     browser.open(page)
     for width, dark in [(1280, False), (1280, True), (400, False), (400, True)]:
         browser.show(width, dark)
-        time.sleep(1.0)
+        browser.settle()
         where = f"at {width} px, {'dark' if dark else 'light'}"
         plots = browser.value_of(LOOK)
         for plot in plots:

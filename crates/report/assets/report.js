@@ -64,11 +64,15 @@
   const range = (values) => values.reduce(([l, h], v) => (v === null ? [l, h] : [Math.min(l, v), Math.max(h, v)]), [Infinity, -Infinity]);
   /** Ends of an axis on round numbers around `low` and `high`. */
   const rounded = (low, high) => {
+    const step = stride(low, high);
+    return [Math.floor(low / step) * step, Math.ceil(high / step) * step].map((end) => +end.toPrecision(12));
+  };
+  /** Distance of about five round numbers between `low` and `high`. */
+  const stride = (low, high) => {
     const width = high - low || Math.abs(high) || 1;
     const rough = width / 5;
     const power = 10 ** Math.floor(Math.log10(rough));
-    const step = power * [1, 2, 5, 10].find((factor) => factor * power >= rough);
-    return [Math.floor(low / step) * step, Math.ceil(high / step) * step].map((end) => +end.toPrecision(12));
+    return power * [1, 2, 5, 10].find((factor) => factor * power >= rough * 0.999999);
   };
   const pairs = (x, y) => x.map((at, index) => [at, y[index]]);
   /** Pieces of consecutive indices at which none of the arrays has a gap. */
@@ -166,7 +170,7 @@
   });
   const coloured = (colour, t, extra) => ({
     type: "continuous", min: colour.from, max: colour.from === colour.to ? colour.from + 1 : colour.to, orient: "horizontal",
-    left: "center", bottom: 4, itemWidth: 10, itemHeight: 150, calculable: false, inRange: { color: t.scale },
+    left: "center", bottom: 4, itemWidth: 10, itemHeight: 150, calculable: false, hoverLink: false, inRange: { color: t.scale },
     text: [`${number(colour.to, 3)}${unit(colour)}`, `${colour.label} ${number(colour.from, 3)}`],
     textStyle: { color: t.quiet, fontSize: 12 }, padding: 0, ...extra,
   });
@@ -437,6 +441,7 @@
   kinds.map = (spec, t, size) => {
     const names = spec.highlights.map((one) => one.label);
     const [key, keyHeight] = legend(names, size.width, t, 1);
+    key.data = names.map((name) => ({ name, icon: "roundRect" }));
     const grid = size.grid(keyHeight);
     const path = pieces(spec.east, spec.north);
     const place = (index) => [spec.east[index], spec.north[index]];
@@ -615,15 +620,19 @@
 
   /** The vertical axis follows what is seen of the curves. */
   const fit = ({ spec, chart }) => {
-    if (spec.stacked) return;
     const [{ start, end, startValue, endValue }] = chart.getOption().dataZoom;
-    if (start <= 0 && end >= 100) return chart.setOption({ yAxis: { min: null, max: null } });
+    const whole = start <= 0 && end >= 100;
+    // The ends of a part are no round numbers: not worth a label.
+    const ends = whole ? null : false;
+    chart.setOption({ xAxis: { axisLabel: { showMinLabel: ends, showMaxLabel: ends } } });
+    if (spec.stacked) return undefined;
+    if (whole) return chart.setOption({ yAxis: { min: null, max: null, interval: null } });
     const values = spec.series.flatMap((one) =>
       one.x.flatMap((x, at) => (x < startValue || x > endValue ? [] : [one.y[at], one.low?.[at] ?? null, one.high?.[at] ?? null])));
     const [low, high] = range(values);
     if (low > high) return undefined;
     const [min, max] = rounded(low, high);
-    return chart.setOption({ yAxis: { min, max } });
+    return chart.setOption({ yAxis: { min, max, interval: stride(low, high) } });
   };
   /** Drag across a plot to zoom, double-click to see all. Fingers scroll the page. */
   const zoomable = (one) => {
@@ -677,7 +686,7 @@
   const button = (one, words, about, act) => {
     const made = Object.assign(document.createElement("button"), { type: "button", textContent: words, title: about });
     made.setAttribute("aria-label", `${about}: ${one.spec.title}`);
-    made.addEventListener("click", () => act(one));
+    made.addEventListener("click", () => one.chart && act(one));
     return made;
   };
   charts.forEach((one, index) => {
@@ -687,7 +696,28 @@
   });
 
   // ---- life of the page --------------------------------------------------------------------------------------------
-  const all = (paper) => charts.forEach((one) => draw(one, paper));
+  /** Draws a plot; one that fails leaves the others standing. */
+  const attempt = (one, paper) => {
+    try {
+      draw(one, paper);
+    } catch (error) {
+      console.error(`${one.spec.title}: ${error.stack ?? error}`);
+    }
+  };
+  // A page of hundreds of plots takes seconds: it is drawn from the top in short turns, and can be read meanwhile.
+  let turn = 0;
+  const all = () => {
+    clearTimeout(turn);
+    document.body.dataset.drawn = "part";
+    const waiting = charts.slice();
+    const some = () => {
+      const until = performance.now() + 50;
+      while (waiting.length && performance.now() < until) attempt(waiting.shift());
+      if (waiting.length) turn = setTimeout(some, 0);
+      else document.body.dataset.drawn = "all";
+    };
+    some();
+  };
   all();
   [...new Set(specs.map((spec) => spec.linked).filter(Boolean))].forEach((group) => echarts.connect(group));
   dark.addEventListener("change", () => all());
@@ -701,7 +731,8 @@
   });
   window.addEventListener("beforeprint", () => {
     printing = true;
-    all(680);
+    clearTimeout(turn);
+    charts.forEach((one) => attempt(one, 680));
   });
   window.addEventListener("afterprint", () => {
     printing = false;

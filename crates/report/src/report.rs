@@ -31,6 +31,18 @@ impl From<Table> for Item {
     }
 }
 
+impl From<Vec<Figure>> for Item {
+    fn from(figures: Vec<Figure>) -> Self {
+        Self::Figures(figures)
+    }
+}
+
+impl From<Vec<String>> for Item {
+    fn from(sentences: Vec<String>) -> Self {
+        Self::Sentences(sentences)
+    }
+}
+
 /// A part of a report, listed in its table of contents. Its plots over time zoom together.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Section {

@@ -30,8 +30,8 @@ pub fn over_time(
     Ok(Plot::new(title, Lines::over_time(axis, series).shaded(shaded)))
 }
 
-/// Predicted minus measured over time, at the samples of the measurement; optionally with the noise of the sensor [unit
-/// of the channel, one standard deviation] as a band of two.
+/// Predicted minus measured over time, at the samples of the measurement; optionally with the noise of the sensor (unit
+/// of the channel, one standard deviation) as a band of two.
 ///
 /// # Errors
 /// [`ReportError::Trace`] where a trace lacks the channel.
@@ -44,11 +44,11 @@ pub fn residual_over_time(
 ) -> Result<Plot, ReportError> {
     let residual = residual(channel, measured, predicted)?;
     let axis = Axis::of(channel);
-    let samples = measured.len();
     let mut series = vec![Series::new("predicted − measured", measured.time_s(), residual)];
-    if let Some(noise) = noise {
-        let expected = Series::new("expected from the sensor (±2σ)", measured.time_s(), vec![0.0; samples])
-            .band(vec![-2.0 * noise; samples], vec![2.0 * noise; samples])
+    if let (Some(noise), [first, .., last]) = (noise, measured.time_s()) {
+        // Level, so its ends are enough.
+        let expected = Series::new("expected from the sensor (±2σ)", [*first, *last], [0.0; 2])
+            .band([-2.0 * noise; 2], [2.0 * noise; 2])
             .drawn(Line::Dashed);
         series.push(expected);
     }

@@ -29,7 +29,7 @@ pub struct Map {
     pub north_m: Vec<f64>,
     /// What the colour of the path shows.
     pub colour: Option<Colour>,
-    /// Direction of travel, clockwise from north [rad], drawn as arrows along the path.
+    /// Direction of travel, clockwise from north, in radians, drawn as arrows along the path.
     pub heading_rad: Option<Vec<f64>>,
     /// Parts that are set off.
     pub highlights: Vec<Highlight>,

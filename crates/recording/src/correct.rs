@@ -8,11 +8,14 @@ use crate::Sensor;
 use headland_trace::{Trace, TraceError};
 
 /// The trace with each described sensor corrected.
-pub(crate) fn correct(trace: &Trace, sensors: &[(String, Sensor)]) -> Result<Trace, TraceError> {
+pub(crate) fn correct(trace: Trace, sensors: &[(String, Sensor)]) -> Result<Trace, TraceError> {
+    let of = |name: &str| sensors.iter().find(|(channel, _)| channel == name).map(|(_, sensor)| *sensor);
+    if !trace.channels().iter().any(|channel| of(&channel.name).is_some_and(|sensor| changes(&sensor))) {
+        return Ok(trace);
+    }
     let mut corrected = Trace::new(trace.time_s().to_vec())?;
     for channel in trace.channels() {
-        let sensor = sensors.iter().find(|(name, _)| *name == channel.name).map(|(_, sensor)| *sensor);
-        let sensor = sensor.unwrap_or_default();
+        let sensor = of(&channel.name).unwrap_or_default();
         let (scale, bias) = (sensor.scale.unwrap_or(1.0), sensor.bias.unwrap_or(0.0));
         let latency_s = sensor.latency_s.unwrap_or(0.0);
         let mut values = channel.values.clone();
@@ -30,6 +33,13 @@ pub(crate) fn correct(trace: &Trace, sensors: &[(String, Sensor)]) -> Result<Tra
     Ok(corrected)
 }
 
+/// Whether anything is to be taken out.
+fn changes(sensor: &Sensor) -> bool {
+    sensor.latency_s.is_some_and(|latency_s| latency_s != 0.0)
+        || sensor.scale.is_some_and(|scale| scale != 1.0)
+        || sensor.bias.is_some_and(|bias| bias != 0.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -42,7 +52,7 @@ mod tests {
     }
 
     fn with(sensor: Sensor) -> Vec<f64> {
-        let corrected = correct(&ramp(), &[("speed_m_s".to_owned(), sensor)]).unwrap();
+        let corrected = correct(ramp(), &[("speed_m_s".to_owned(), sensor)]).unwrap();
         corrected.get("speed_m_s").unwrap().to_vec()
     }
 

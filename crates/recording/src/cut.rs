@@ -10,7 +10,7 @@ const SHORTEST_S: f64 = 10.0;
 
 /// The stretches of a trace that are runs, with their times [s], and what to say about it.
 pub(crate) fn pieces(
-    trace: &Trace,
+    trace: Trace,
     segments: &[Segment],
     split: Option<&Split>,
     run: &str,
@@ -19,7 +19,7 @@ pub(crate) fn pieces(
     if !segments.is_empty() {
         return segments.iter().map(|segment| trace.slice(segment.from_s, segment.to_s)).collect();
     }
-    let Some(split) = split else { return vec![trace.clone()] };
+    let Some(split) = split else { return vec![trace] };
     let time = trace.time_s();
     let speed = trace.get("speed_m_s").or_else(|| trace.get("wheel_speed_m_s"));
     let cuts: Vec<usize> = (1..time.len())
@@ -33,6 +33,9 @@ pub(crate) fn pieces(
         .collect();
     let mut ends = cuts.clone();
     ends.push(time.len());
+    if cuts.is_empty() {
+        return vec![trace];
+    }
     let (mut start, mut left_out) = (0, 0);
     let mut found = Vec::new();
     for end in ends {
@@ -74,7 +77,7 @@ mod tests {
     fn a_log_is_cut_where_speed_jumps_or_time_does() {
         let split = Split { speed_jump_m_s: Some(3.0), gap_s: Some(5.0), shortest_s: Some(0.0) };
         let mut notices = Vec::new();
-        let found = pieces(&drive(), &[], Some(&split), "r", &mut notices);
+        let found = pieces(drive(), &[], Some(&split), "r", &mut notices);
         assert_eq!(found.iter().map(Trace::len).collect::<Vec<_>>(), [15, 15, 10]);
         assert_eq!(
             (notices[0].kind, notices[0].count, notices[0].first_s),
@@ -86,14 +89,14 @@ mod tests {
     fn short_pieces_are_left_out_and_told() {
         let split = Split { speed_jump_m_s: Some(3.0), gap_s: Some(5.0), shortest_s: None };
         let mut notices = Vec::new();
-        assert_eq!(pieces(&drive(), &[], Some(&split), "r", &mut notices).len(), 2);
+        assert_eq!(pieces(drive(), &[], Some(&split), "r", &mut notices).len(), 2);
         assert!(notices[0].text.contains("1 piece shorter than 10 s"), "{}", notices[0].text);
     }
 
     #[test]
     fn segments_hold_both_their_ends() {
         let segments = [Segment { from_s: 2.0, to_s: 4.0 }, Segment { from_s: 6.0, to_s: 6.5 }];
-        let found = pieces(&drive(), &segments, None, "r", &mut Vec::new());
+        let found = pieces(drive(), &segments, None, "r", &mut Vec::new());
         assert_eq!(found[0].time_s(), [2.0, 3.0, 4.0]);
         assert_eq!(found[1].time_s(), [6.0]);
     }

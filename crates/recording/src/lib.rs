@@ -12,6 +12,7 @@
 mod cells;
 mod clock;
 mod column_unit;
+mod conversion;
 mod correct;
 mod cut;
 mod describe;
@@ -30,6 +31,7 @@ mod source;
 mod text;
 mod time_plan;
 mod validate;
+mod words;
 
 pub use error::{Place, RecordingError};
 pub use load::{check, load};

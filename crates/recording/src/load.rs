@@ -40,9 +40,10 @@ pub fn load(path: &Path) -> Result<Recording, RecordingError> {
         for (name, trace) in log.traces {
             let id = name.map_or_else(|| run.id.clone(), |name| format!("{}.{name}", run.id));
             look::at_log(&trace, &id, &mut notices);
-            let trace = correct(&trace, &log.sensors).map_err(|source| broken(&described, index, source))?;
+            let trace = correct(trace, &log.sensors).map_err(|source| broken(&described, index, source))?;
             let split = run.split.as_ref().or(described.text.split.as_ref());
-            let pieces = cut::pieces(&trace, &run.segments, split, &id, &mut notices);
+            let span = span(&trace);
+            let pieces = cut::pieces(trace, &run.segments, split, &id, &mut notices);
             let several = pieces.len() > 1;
             for (number, piece) in pieces.into_iter().enumerate() {
                 if piece.len() < 2 {
@@ -51,7 +52,7 @@ pub fn load(path: &Path) -> Result<Recording, RecordingError> {
                         at,
                         field: format!("segment {} of `{id}`", number + 1),
                         found: format!("{} rows", piece.len()),
-                        expected: format!("at least 2; the log goes from {}", span(&trace)),
+                        expected: format!("at least 2; the log goes from {span}"),
                     });
                 }
                 let id = if several { format!("{id}.{}", number + 1) } else { id.clone() };

@@ -69,6 +69,9 @@ pub struct Known {
 }
 
 /// What is known of a sensor, in the unit that ends its channel's name.
+///
+/// Latency, scale and bias have been taken out of the trace already: corrected = (raw − bias) / scale, shifted by
+/// −latency. Noise is what is left.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sensor {
     /// One standard deviation of a sample.

@@ -1,6 +1,6 @@
 //! What a description can say beyond columns.
 
-use crate::{Folder, alike};
+use crate::{Folder, alike, lines};
 use headland_recording::{Known, Sensor, check};
 
 const LOG: &str = "time_s,speed_m_s,force_n\n0,1,10\n1,2,20\n2,3,30\n3,4,40\n4,5,50\n";
@@ -36,10 +36,7 @@ fn segments_paths_and_uses_make_runs() {
 
 #[test]
 fn a_log_of_several_drives_is_cut() {
-    let mut log = String::from("time_s,speed_m_s\n");
-    for row in 0..60 {
-        log.push_str(&format!("{row},{}\n", if row < 30 { 20 } else { 5 }));
-    }
+    let log = lines("time_s,speed_m_s", 60, |row| format!("{row},{}", if row < 30 { 20 } else { 5 }));
     let recording = Folder::log(log, "split: (speed_jump_m_s: 3.0)").load().unwrap();
     let runs: Vec<_> = recording.runs.iter().map(|run| (run.id.as_str(), run.trace.len())).collect();
     assert_eq!(runs, [("r.1", 30), ("r.2", 30)]);
@@ -138,11 +135,7 @@ fn a_check_looks_at_the_first_rows_of_each_log() {
     let checked = check(&folder.path("recording.ron")).unwrap();
     assert_eq!(checked.runs[0].channels, ["speed_m_s", "force_n"]);
     assert_eq!(checked.runs[0].format, "csv, delimiter \",\", utf-8");
-    let mut long = String::from("time_s,speed_m_s\n");
-    for row in 0..5000 {
-        long.push_str(&format!("{row},1\n"));
-    }
-    let folder = Folder::log(long, "");
+    let folder = Folder::log(lines("time_s,speed_m_s", 5000, |row| format!("{row},1")), "");
     assert_eq!(check(&folder.path("recording.ron")).unwrap().runs[0].rows, 1000);
 }
 

@@ -1,6 +1,6 @@
 //! Every layout in which people have their logs.
 
-use crate::{Folder, alike};
+use crate::{Folder, alike, lines};
 use flate2::{Compression, write::GzEncoder};
 use headland_recording::NoticeKind;
 use headland_trace::{Origin, Run, Trace, write_parquet};
@@ -139,13 +139,10 @@ fn a_parquet_file_holds_one_run_or_several() {
     assert_eq!(ids, ["p.a", "p.b"]);
 }
 
-/// A cell of 300 kB is longer than what is looked at to guess the layout.
 #[test]
 fn a_log_longer_than_what_is_looked_at_is_read_whole() {
-    let mut log = String::from("time_s;speed_m_s;note\n");
-    for row in 0..60_000 {
-        log.push_str(&format!("{row};{},25;ä\n", row % 7));
-    }
+    let log = lines("time_s;speed_m_s;note", 60_000, |row| format!("{row};{},25;ä", row % 7));
+    assert!(log.len() > 3 << 18);
     let folder = Folder::log(log, "");
     let speed = folder.values("speed_m_s");
     assert_eq!((speed.len(), speed[59_999]), (60_000, 59_999_f64 % 7.0 + 0.25));

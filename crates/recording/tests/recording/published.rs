@@ -39,8 +39,9 @@ fn every_description_is_tried_here() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/recordings");
     let mut names: Vec<String> = std::fs::read_dir(folder)
         .unwrap()
-        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
-        .filter(|name| name.ends_with(".ron"))
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|ending| ending == "ron"))
+        .filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned()))
         .collect();
     names.sort();
     let expected = [
@@ -53,7 +54,7 @@ fn every_description_is_tried_here() {
         "tractor_t7165",
         "twizy",
     ];
-    assert_eq!(names, expected.map(|name| format!("{name}.ron")));
+    assert_eq!(names, expected);
 }
 
 #[test]

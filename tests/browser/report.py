@@ -227,7 +227,7 @@ def main():
         try:
             plots, wrong = check(browser, pathlib.Path(arguments[0]), shots)
         except (OSError, RuntimeError, TimeoutError) as error:
-            plots, wrong = 0, [str(error)]
+            plots, wrong = 0, [str(error), *browser.complaints()]
         finally:
             browser.close()
     for line in wrong:

@@ -9,7 +9,7 @@ use headland_trace::{Origin, Trace};
 use std::error::Error;
 use std::path::Path;
 
-/// Mass of the vehicle of the gallery [kg].
+/// Mass of the vehicle of the gallery, in kg.
 const MASS_KG: f64 = 13_000.0;
 
 fn main() -> Result<(), Box<dyn Error>> {

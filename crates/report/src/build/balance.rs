@@ -30,7 +30,7 @@ pub fn force_budget(trace: &Trace, channels: &[&str], stacked: bool) -> Result<P
     Ok(Plot::new("Force budget", if stacked { lines.stacked() } else { lines }))
 }
 
-/// Energy [J] from sources through the vehicle, called `through`, to sinks.
+/// Energy in joules from sources through the vehicle, called `through`, to sinks.
 ///
 /// A negative source is drawn as a sink and the other way round; zeros and missing values are left out. What the two
 /// sides differ by is drawn as "residual" where it is more than a millionth, and said below the plot in any case.

@@ -82,7 +82,7 @@ pub fn residual_against(
 }
 
 /// The path from `east_m` and `north_m`, coloured by a channel, with arrows where there is `heading_rad`; `parts` are
-/// intervals of time [s] to set off.
+/// intervals of time, in seconds, to set off.
 ///
 /// # Errors
 /// [`ReportError::Trace`] where the trace lacks the place or the colouring channel.

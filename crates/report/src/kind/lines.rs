@@ -88,7 +88,7 @@ impl Lines {
         Self { x, y, series, ..Self::default() }
     }
 
-    /// Lines over time [s]. All of these in one section zoom together.
+    /// Lines over time in seconds. All of these in one section zoom together.
     pub fn over_time(y: Axis, series: Vec<Series>) -> Self {
         Self { along_time: true, ..Self::over(Axis::time(), y, series) }
     }

@@ -348,7 +348,10 @@ fn path_length_m(recording: &Recording, path: Option<&str>) -> f64 {
         (Some(position), _) => position.iter().copied().filter(|value| value.is_finite()).fold(0.0, f64::max),
         (None, Some(speed)) => {
             let steps = run.trace.time_s().windows(2).zip(speed.windows(2));
-            steps.map(|(time, speed)| 0.5 * (speed[0] + speed[1]) * (time[1] - time[0])).filter(|m| m.is_finite()).sum()
+            steps
+                .map(|(time, speed)| 0.5 * (speed[0] + speed[1]) * (time[1] - time[0]))
+                .filter(|m| m.is_finite())
+                .sum()
         }
         _ => 0.0,
     };
@@ -407,7 +410,14 @@ fn signals(drive: Drive) -> &'static [&'static str] {
 
 /// Those that the model's driveline shows at all.
 fn predicted(signals: Vec<String>, model: &Model, trace: &Trace) -> Vec<String> {
-    let how = Replay { drive: Drive::Speed, also: Vec::new(), window_s: None, smoothing_s: 1.0, step_s: 1.0, reversed_from_m: None };
+    let how = Replay {
+        drive: Drive::Speed,
+        also: Vec::new(),
+        window_s: None,
+        smoothing_s: 1.0,
+        step_s: 1.0,
+        reversed_from_m: None,
+    };
     let times = trace.time_s();
     let Some(first) = times.first() else { return Vec::new() };
     let probe = trace.slice(*first, times.get(9).copied().unwrap_or(*first));

@@ -28,6 +28,9 @@ pub struct Common {
     /// Number of threads; results do not depend on it
     #[arg(long, global = true, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
+    /// Seed of everything that is drawn at random; the same seed gives the same result
+    #[arg(long, global = true, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
 }
 
 /// What to do.
@@ -37,6 +40,14 @@ pub enum Command {
     Run(RunOptions),
     /// Read and check scenarios and recording descriptions without running them
     Check(CheckOptions),
+    /// Drive a scenario with a recording and compare the two
+    Compare(CompareOptions),
+    /// Fit the free parameters of a scenario to a recording
+    Calibrate(CalibrateOptions),
+    /// Rolling resistance and road loads from coast-downs
+    Coastdown(CoastdownOptions),
+    /// A built-in example that needs no file
+    Demo(DemoOptions),
     /// List the models that scenarios can name, with their parameters, equations and sources
     Plugins(PluginsOptions),
 }
@@ -56,6 +67,79 @@ pub struct RunOptions {
     /// Open the Rerun viewer
     #[arg(long)]
     pub view: bool,
+}
+
+/// A scenario and the recording that it is held against.
+#[derive(Args, Debug)]
+pub struct HeldOptions {
+    /// The scenario
+    #[arg(value_name = "SCENARIO.ron")]
+    pub scenario: PathBuf,
+    /// Description of the recording
+    #[arg(long, value_name = "RECORDING.ron")]
+    pub recording: PathBuf,
+    /// Where results are put
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Options of `headland compare`.
+#[derive(Args, Debug)]
+pub struct CompareOptions {
+    /// What is compared with what
+    #[command(flatten)]
+    pub held: HeldOptions,
+    /// What has to hold in every run, as in "speed_m_s rmse < 0.2 m/s"; repeatable
+    #[arg(long, value_name = "REQUIREMENT")]
+    pub require: Vec<String>,
+    /// Write `run.rrd` for the Rerun viewer as well
+    #[arg(long)]
+    pub rerun: bool,
+    /// Open the Rerun viewer
+    #[arg(long)]
+    pub view: bool,
+}
+
+/// Options of `headland calibrate`.
+#[derive(Args, Debug)]
+pub struct CalibrateOptions {
+    /// What is fitted to what
+    #[command(flatten)]
+    pub held: HeldOptions,
+}
+
+/// Options of `headland coastdown`.
+#[derive(Args, Debug)]
+pub struct CoastdownOptions {
+    /// Description of the recording
+    #[arg(value_name = "RECORDING.ron")]
+    pub recording: PathBuf,
+    /// Where results are put
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// What the recording does not know, as in `mass_kg=13019.3` or `mass_kg=13.02t+-65kg`; repeatable
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub known: Vec<String>,
+    /// Unit of v in `c_w` (1 + v/100): `km/h`, `mph` or `m/s`
+    #[arg(long, value_name = "UNIT")]
+    pub speed_unit: Option<String>,
+    /// Samples slower than this are left out, m/s
+    #[arg(long, value_name = "SPEED")]
+    pub lowest_speed: Option<f64>,
+}
+
+/// Options of `headland demo`.
+#[derive(Args, Debug)]
+pub struct DemoOptions {
+    /// `coastdown`: simulate ten coast-downs, add sensor noise, analyse, compare, report
+    #[arg(value_name = "NAME", default_value = "coastdown")]
+    pub name: String,
+    /// List the examples
+    #[arg(long)]
+    pub list: bool,
+    /// Where results are put
+    #[arg(long, value_name = "DIR", default_value = "out/demo")]
+    pub out: PathBuf,
 }
 
 /// Options of `headland check`.

@@ -1,6 +1,12 @@
 //! How a command ends when it does not end well.
 
-use headland_scenario::ScenarioError;
+use headland_calibrate::coastdown::CoastDownError;
+use headland_calibrate::study::StudyError;
+use headland_compare::CompareError;
+use headland_recording::RecordingError;
+use headland_report::ReportError;
+use headland_scenario::{Location, ScenarioError};
+use headland_trace::TraceError;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Exit status: the work was done and a stated requirement was not met.
@@ -54,6 +60,65 @@ impl Failure {
 impl From<ScenarioError> for Failure {
     fn from(error: ScenarioError) -> Self {
         Self::Input(error.told())
+    }
+}
+
+impl From<RecordingError> for Failure {
+    fn from(error: RecordingError) -> Self {
+        Self::Input(told_recording(&error))
+    }
+}
+
+/// The message, and the line that it is about where that is a description and not a log.
+pub fn told_recording(error: &RecordingError) -> String {
+    let told = error.to_string();
+    let Some((path, line, column)) = error.location() else { return told };
+    let is_description = path.extension().is_some_and(|end| end == "ron");
+    let text = if is_description { std::fs::read_to_string(&path).ok() } else { None };
+    let Some(excerpt) = text.as_deref().and_then(|text| text.lines().nth(line - 1)) else { return told };
+    let place = format!("\n  {}", error.place());
+    let message = told.strip_suffix(&place).unwrap_or(&told);
+    let location = Location { path, line, column, width: 1, excerpt: excerpt.to_owned() };
+    format!("{message}\n{}", location.shown(""))
+}
+
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
+        match error {
+            StudyError::Interrupted => Self::Interrupted,
+            StudyError::Trace(error) => Self::Machine(error.to_string()),
+            other => Self::Input(other.to_string()),
+        }
+    }
+}
+
+impl From<CompareError> for Failure {
+    fn from(error: CompareError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<CoastDownError> for Failure {
+    fn from(error: CoastDownError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<ReportError> for Failure {
+    fn from(error: ReportError) -> Self {
+        match error {
+            ReportError::File { path, source } => Self::unwritable(&path, &source),
+            other => Self::Machine(other.to_string()),
+        }
+    }
+}
+
+impl From<TraceError> for Failure {
+    fn from(error: TraceError) -> Self {
+        match error {
+            TraceError::File { path, source } => Self::unwritable(&path, &source),
+            other => Self::Machine(other.to_string()),
+        }
     }
 }
 

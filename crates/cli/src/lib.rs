@@ -11,8 +11,13 @@
 mod arguments;
 mod command;
 mod failure;
+mod fitted;
+mod held;
 mod output;
+mod page;
+mod picture;
 mod say;
+mod study_input;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -56,6 +61,10 @@ fn begin(registry: &Registry, arguments: &Arguments, say: &Say) -> Result<(), Fa
     match &arguments.command {
         Command::Run(options) => command::run::run(registry, options, say),
         Command::Check(options) => command::check::check(registry, options, say),
+        Command::Compare(options) => command::compare::compare(registry, options, say),
+        Command::Calibrate(options) => command::calibrate::calibrate(registry, options, say),
+        Command::Coastdown(options) => command::coastdown::coastdown(options, arguments.common.seed, say),
+        Command::Demo(options) => command::demo::demo(registry, options, arguments.common.seed, say),
         Command::Plugins(options) => command::plugins::plugins(registry, options, say),
     }
 }

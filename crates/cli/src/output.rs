@@ -1,7 +1,8 @@
 //! The folder that a command writes into.
 
 use crate::failure::Failure;
-use headland_trace::{Run, TraceError, write_parquet};
+use headland_report::Report;
+use headland_trace::{Run, write_parquet};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -49,10 +50,25 @@ impl Output {
     /// Writes traces.
     pub fn traces(&mut self, name: &str, runs: &[Run]) -> Result<(), Failure> {
         let path = self.file(name);
-        write_parquet(&path, runs).map_err(|error| match error {
-            TraceError::File { path, source } => Failure::unwritable(&path, &source),
-            other => Failure::Machine(other.to_string()),
-        })
+        Ok(write_parquet(&path, runs)?)
+    }
+
+    /// Writes a page.
+    pub fn page(&mut self, name: &str, report: &Report) -> Result<(), Failure> {
+        let path = self.file(name);
+        Ok(report.write(&path)?)
+    }
+
+    /// Makes a folder inside.
+    pub fn folder(&self, name: &str) -> Result<PathBuf, Failure> {
+        let folder = self.folder.join(name);
+        std::fs::create_dir_all(&folder).map_err(|error| Failure::unwritable(&folder, &error))?;
+        Ok(folder)
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.folder
     }
 
     /// The line that tells what was written.

@@ -427,6 +427,7 @@ fn replay_settings(file: &ScenarioFile) -> ReplaySettings {
                 InputFile::AuxiliaryPower => Inputs::AuxiliaryPower,
                 InputFile::DrawbarForce => Inputs::DrawbarForce,
                 InputFile::Coasting => Inputs::Coasting,
+                InputFile::Brake => Inputs::Brake,
             };
             inputs.iter().map(input).collect()
         }),

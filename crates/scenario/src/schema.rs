@@ -149,6 +149,7 @@ pub enum InputFile {
     AuxiliaryPower,
     DrawbarForce,
     Coasting,
+    Brake,
 }
 
 #[derive(Debug, Deserialize)]

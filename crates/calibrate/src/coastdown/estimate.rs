@@ -13,6 +13,9 @@ use nalgebra::{DMatrix, DVector};
 const LEVEL: f64 = 0.95;
 /// Fewest runs that a bootstrap is drawn from.
 const LEAST_RUNS: usize = 5;
+/// Fewest degrees of freedom of the scatter between runs that an interval is built on; two runs in one direction
+/// have one.
+const LEAST_DEGREES: f64 = 0.9;
 
 /// A fit and what its constants add to its uncertainty.
 pub struct Judged {
@@ -63,9 +66,12 @@ impl Judged {
         let scatter = self.fitted.pooled.variance(direction);
         let systematic = (self.systematic.transpose() * direction).norm_squared();
         let degrees = self.fitted.pooled.degrees_of_freedom(direction);
+        if degrees.is_nan() || degrees < LEAST_DEGREES {
+            return (value, None);
+        }
         let (interval, degrees) = student_interval(value, scatter, degrees, systematic, LEVEL);
         let standard_error = (scatter + systematic).sqrt();
-        let usable = degrees >= 0.99 && interval.iter().all(|end| end.is_finite());
+        let usable = interval.iter().all(|end| end.is_finite());
         (value, usable.then_some(Spread { standard_error, degrees, interval }))
     }
 

@@ -18,6 +18,10 @@ use nalgebra::{DMatrix, DVector};
 const ROUNDING_M_S: f64 = 1e-10;
 /// Relinearisations of the generalised fit; two or three are the rule.
 const ROUNDS: usize = 30;
+/// Rounds in which the covariance follows the residuals; then it is held, or the two can chase each other.
+const FREE_ROUNDS: usize = 6;
+/// A step below this share of the standard error ends the search.
+const SETTLED: f64 = 1e-4;
 
 /// What is fitted to what.
 #[derive(Clone, Debug)]
@@ -47,7 +51,8 @@ pub struct Fitted {
     pub clusters: Vec<Cluster>,
     /// Their pool; its step is rounding.
     pub pooled: Pooled,
-    /// Offset of each run, and its standard deviation from the noise within the run; over weight.
+    /// Offset of the level of each run, and its standard deviation from the noise within the run: of c_w where that is
+    /// fitted, else of resistance over weight.
     pub offsets: Vec<(f64, f64)>,
     /// Root mean square of the residual of each run, with its own offset [m/s].
     pub rms_m_s: Vec<f64>,
@@ -70,12 +75,19 @@ impl Model<'_> {
         let size = self.terms.len();
         let mut parameters: Vec<f64> = solution.x.as_slice()[..size].to_vec();
         let mut initial: Vec<f64> = solution.x.as_slice()[size..].to_vec();
-        for _ in 0..ROUNDS {
+        let mut held: Option<Noise> = None;
+        for round in 0..ROUNDS {
             let deviations = self.deviations(&parameters, &initial);
-            let own = self.own_deviations(&deviations)?;
-            let time = correlation_time_s(self.coasts, &own);
+            let time = match held {
+                Some(noise) if round >= FREE_ROUNDS => noise.correlation_time_s,
+                _ => correlation_time_s(self.coasts, &self.own_deviations(&deviations)?),
+            };
             let normals = self.normals(&deviations, time);
-            let noise = self.noise(&normals, time)?;
+            let noise = match held {
+                Some(noise) if round >= FREE_ROUNDS => noise,
+                _ => self.noise(&normals, time)?,
+            };
+            held = Some(noise);
             let clusters = self.clusters(&normals, &noise)?;
             let (step, covariance) = step(&clusters).ok_or(self.undetermined())?;
             let mut largest: f64 = 0.0;
@@ -87,7 +99,7 @@ impl Model<'_> {
             for (speed, normal) in initial.iter_mut().zip(&normals) {
                 *speed += response(normal, &step, &noise)[1];
             }
-            if largest < 1e-5 {
+            if largest < SETTLED {
                 return self.at(parameters, initial, noise);
             }
         }
@@ -141,6 +153,15 @@ impl Model<'_> {
         })
     }
 
+    /// What varies from run to run: the level, with the shape that the model gives it. A run could otherwise set its
+    /// level by an offset and the common coefficient by the bend of its curve, which a wrong model bends too.
+    fn offset_term(&self) -> Term {
+        match self.terms.first() {
+            Some(rolling @ Term::Rolling { .. }) => *rolling,
+            _ => Term::Offset,
+        }
+    }
+
     fn undetermined(&self) -> CoastDownError {
         CoastDownError::Undetermined { model: self.name }
     }
@@ -167,7 +188,7 @@ impl Model<'_> {
 
     fn deviations(&self, parameters: &[f64], initial_m_s: &[f64]) -> Vec<Deviation> {
         let mut terms = self.terms.clone();
-        terms.push(Term::Offset);
+        terms.push(self.offset_term());
         let mut parameters = parameters.to_vec();
         parameters.push(0.0);
         let motion = Motion { terms: &terms, parameters: &parameters, air: self.air };

@@ -6,6 +6,7 @@
 //!
 //! m_eff dv/dt = −(f0 + f1 v + f2 v²) − m g θ d − ρ CdA w v d          d = ±1, the direction of the run on its path
 
+mod curve;
 mod error;
 mod estimate;
 mod fit;
@@ -22,6 +23,7 @@ mod tables;
 mod tests;
 mod two_stage;
 
+pub use curve::Curve;
 pub use error::CoastDownError;
 pub use input::{CoastRun, Constant, Settings, SpeedUnit};
 pub use report::{

@@ -15,7 +15,7 @@ pub struct Noise {
     pub sample_m_s: f64,
     /// T, how long a deviation lasts [s]; 0 where samples are independent.
     pub correlation_time_s: f64,
-    /// τ, standard deviation of resistance between runs, over weight.
+    /// τ, standard deviation between runs: of c_w where that is fitted, else of resistance over weight.
     pub between_runs: f64,
 }
 

@@ -184,13 +184,15 @@ fn sentence(study: &Study, sight: &Sight, blind: &Blind) -> String {
             "The {name} and the level of resistance cannot be separated, as it was driven in one direction only: {own} \
              looks like {looks}; drive it in both directions."
         ),
-        (Term::RotatingMass, true, false) => format!(
+        (Term::RotatingMass, exact, false) => format!(
             "The rotating mass and the level of resistance cannot be separated, as only force over mass is seen: \
-             {own} looks like {looks}; repeat with a known ballast or against a known force."
+             {own} looks like {looks}{}; repeat with a known ballast or against a known force.",
+            if exact { String::new() } else { format!(", and {known}") }
         ),
-        (Term::SpeedScale, true, false) => format!(
+        (Term::SpeedScale, exact, false) => format!(
             "A scale error of the speed sensor and the level of resistance cannot be separated: {own} looks like \
-             {looks}; check the sensor against a measured distance."
+             {looks}{}; check the sensor against a measured distance.",
+            if exact { String::new() } else { format!(", and {known}") }
         ),
         (_, true, false) => {
             format!("The {name} cannot be separated from the rest: {own} looks like {looks}.")

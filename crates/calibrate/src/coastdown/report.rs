@@ -66,7 +66,7 @@ pub struct FitReport {
     pub sample_sd_m_s: f64,
     /// How long a deviation of speed lasts [s].
     pub correlation_time_s: f64,
-    /// Standard deviation of resistance between runs, over weight.
+    /// Standard deviation between runs beyond sensor noise: of c_w where that is fitted, else of resistance over weight.
     pub between_runs_sd: f64,
     /// Replicates of the bootstrap.
     pub replicates: usize,
@@ -121,7 +121,7 @@ pub struct UnitReading {
     pub c_w: f64,
     /// Root mean square of the residual of speed [m/s].
     pub rms_m_s: f64,
-    /// Standard deviation of resistance between runs, over weight.
+    /// Standard deviation of c_w between runs beyond sensor noise.
     pub between_runs_sd: f64,
 }
 
@@ -167,7 +167,8 @@ pub struct PairRow {
     pub forward: String,
     /// Run against it.
     pub reversed: String,
-    /// Half the sum of their mean resistances [N]: what does not depend on direction.
+    /// Half the sum of their mean resistances over the speeds that both went through [N]: what does not depend on
+    /// direction.
     pub resistance_n: f64,
     /// Half the difference of their mean resistances [N]: what does.
     pub asymmetry_n: f64,

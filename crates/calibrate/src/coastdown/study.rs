@@ -2,7 +2,7 @@
 
 use super::CoastDownError;
 use super::estimate::Judged;
-use super::fit::Model;
+use super::fit::{Fitted, Model};
 use super::input::{CoastRun, Constant, Settings, SpeedUnit};
 use super::motion::{Air, Term};
 use super::null_space::{self, Sight};
@@ -22,7 +22,7 @@ pub struct Study {
     left_out: Vec<LeftOut>,
     /// The same coast-downs with one uncertain constant moved by its standard deviation each.
     shifted: Vec<Vec<Coast>>,
-    settings: Settings,
+    pub(super) settings: Settings,
 }
 
 /// Analyses a study of coast-downs.
@@ -88,7 +88,7 @@ impl Study {
         };
         let runs =
             tables::runs(&self.coasts, &self.paths, &judged.fitted, law.as_ref().map(|law| &law.fitted));
-        let pairs = tables::pairs(&self.coasts, &runs);
+        let pairs = tables::pairs(&self.coasts, &runs, &judged.fitted);
         Ok(CoastDown {
             schema: SCHEMA.to_owned(),
             null_space: null_space::sentences(self, &sight, &judged.fitted, self.settings.speed_law_unit),
@@ -168,6 +168,12 @@ impl Study {
         let model = self.road_load_model(sight.separable());
         let fitted = model.fit()?;
         Ok((Judged::new(&model, fitted, &self.shifted, &self.settings)?, sight))
+    }
+
+    /// The road load alone, without intervals.
+    pub(super) fn fit_road_load(&self) -> Result<Fitted, CoastDownError> {
+        let sight = self.judge_road_load_blindness()?;
+        self.road_load_model(sight.separable()).fit()
     }
 
     fn describe_road_load(&self, judged: &Judged) -> RoadLoad {

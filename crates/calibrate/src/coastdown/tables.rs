@@ -53,12 +53,12 @@ fn coefficients(coast: &Coast, law: &Fitted, index: usize) -> (f64, f64) {
     };
     let motion = Motion { terms: &directional, parameters: &law.parameters[1..], air: Air::WindOnly };
     let asymmetry = mean(coast, |at| motion.resistance_n(&calm, calm.ambient[at], calm.speed_m_s[at]));
-    let own = law.parameters[0] + law.offsets[index].0 * coast.weight_n() / per_coefficient;
+    let own = law.parameters[0] + law.offsets[index].0;
     (own, own + asymmetry / per_coefficient)
 }
 
 /// Each run along a path with the unused run against it whose initial speed is nearest.
-pub fn pairs(coasts: &[Coast], rows: &[RunRow]) -> Vec<PairRow> {
+pub fn pairs(coasts: &[Coast], rows: &[RunRow], road_load: &Fitted) -> Vec<PairRow> {
     let mut used = vec![false; coasts.len()];
     let mut pairs = Vec::new();
     for (index, coast) in coasts.iter().enumerate().filter(|(_, coast)| coast.sign > 0.0) {
@@ -73,23 +73,45 @@ pub fn pairs(coasts: &[Coast], rows: &[RunRow]) -> Vec<PairRow> {
             continue;
         }
         used[other] = true;
-        pairs.push(pair(&coasts[index], &coasts[other], &rows[index], &rows[other]));
+        let speeds = common_speeds(&coasts[index], &coasts[other]);
+        let resistance = |at: usize| apparent_n(&coasts[at], road_load, at, &speeds);
+        pairs.push(pair(
+            [&coasts[index], &coasts[other]],
+            [&rows[index], &rows[other]],
+            [resistance(index), resistance(other)],
+            speeds.iter().sum::<f64>() / speeds.len() as f64,
+        ));
     }
     pairs
 }
 
-fn pair(along: &Coast, against: &Coast, forward: &RunRow, reversed: &RunRow) -> PairRow {
-    let asymmetry_n = 0.5 * (forward.apparent_resistance_n - reversed.apparent_resistance_n);
-    let weight = 0.5 * (along.weight_n() + against.weight_n());
-    let speed = 0.5 * (mean(along, |at| along.speed_m_s[at]) + mean(against, |at| against.speed_m_s[at]));
-    let k = along.half_density_drag_area_kg_m.filter(|k| *k > 0.0);
+/// Speeds that both runs went through: a run uphill is soon slow, and its mean resistance is not that of one downhill.
+fn common_speeds(one: &Coast, other: &Coast) -> Vec<f64> {
+    let high = one.speed_m_s[0].min(other.speed_m_s[0]);
+    let low = one.last_m_s().max(other.last_m_s()).min(high);
+    (0..=10).map(|part| low + (high - low) * 0.1 * f64::from(part)).collect()
+}
+
+/// Mean resistance of one run over some speeds, whatever its cause.
+fn apparent_n(coast: &Coast, road_load: &Fitted, index: usize, speeds: &[f64]) -> f64 {
+    let motion = Motion { terms: &road_load.terms, parameters: &road_load.parameters, air: Air::WindOnly };
+    let ambient = coast.ambient[coast.ambient.len() / 2];
+    let sum: f64 = speeds.iter().map(|speed| motion.resistance_n(coast, ambient, *speed)).sum();
+    sum / speeds.len() as f64 + road_load.offsets[index].0 * coast.weight_n()
+}
+
+fn pair(coasts: [&Coast; 2], rows: [&RunRow; 2], resistance_n: [f64; 2], speed_m_s: f64) -> PairRow {
+    let [forward, reversed] = rows;
+    let asymmetry_n = 0.5 * (resistance_n[0] - resistance_n[1]);
+    let weight = 0.5 * (coasts[0].weight_n() + coasts[1].weight_n());
+    let k = coasts[0].half_density_drag_area_kg_m.filter(|k| *k > 0.0);
     PairRow {
         forward: forward.run.clone(),
         reversed: reversed.run.clone(),
-        resistance_n: 0.5 * (forward.apparent_resistance_n + reversed.apparent_resistance_n),
+        resistance_n: 0.5 * (resistance_n[0] + resistance_n[1]),
         asymmetry_n,
         as_grade: asymmetry_n / weight,
-        as_headwind_m_s: k.map(|k| asymmetry_n / (2.0 * k * speed)),
+        as_headwind_m_s: k.map(|k| asymmetry_n / (2.0 * k * speed_m_s)),
         c_w: forward.c_w_apparent.zip(reversed.c_w_apparent).map(|(one, other)| 0.5 * (one + other)),
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::arguments::CheckOptions;
 use crate::command::run::told_remark;
-use crate::failure::Failure;
+use crate::failure::{Failure, told_recording};
 use crate::say::Say;
 use headland_plugin::Registry;
 use headland_scenario::{Document, Scenario};
@@ -25,7 +25,14 @@ pub fn check(registry: &Registry, options: &CheckOptions, say: &Say) -> Result<(
     let checked: Vec<Checked> = options.files.iter().map(|path| check_one(registry, path)).collect();
     let mut text = String::new();
     for one in &checked {
-        let _ = writeln!(text, "{}  {}  {}: {}", if one.ok { "ok   " } else { "wrong" }, one.file, one.kind, one.told);
+        let _ = writeln!(
+            text,
+            "{}  {}  {}: {}",
+            if one.ok { "ok   " } else { "wrong" },
+            one.file,
+            one.kind,
+            one.told
+        );
         for remark in &one.remarks {
             let _ = writeln!(text, "       note: {remark}");
         }
@@ -46,7 +53,10 @@ fn check_one(registry: &Registry, path: &Path) -> Checked {
             return Checked { file, kind: "file", ok: false, told: error.told(), remarks: Vec::new() };
         }
     };
-    let result: Result<(String, Vec<String>), String> = match kind {
+    let result = match kind {
+        "recording" => headland_recording::check(path)
+            .map(|check| (check.about, check.notices.iter().map(ToString::to_string).collect()))
+            .map_err(|error| told_recording(&error)),
         _ => Scenario::read(path, registry)
             .map(|scenario| (scenario.about.clone(), scenario.remarks.iter().map(told_remark).collect()))
             .map_err(|error| error.told()),

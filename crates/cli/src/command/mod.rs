@@ -1,5 +1,9 @@
 //! One file a command.
 
+pub mod calibrate;
 pub mod check;
+pub mod coastdown;
+pub mod compare;
+pub mod demo;
 pub mod plugins;
 pub mod run;

@@ -45,13 +45,18 @@ pub fn plugins(registry: &Registry, options: &PluginsOptions, say: &Say) -> Resu
         if whole { describe(&mut text, one) } else { line(&mut text, one) }
     }
     if !whole {
-        text.push_str("\n`headland plugins KIND` or `headland plugins NAME` tells equation, source and parameters.\n");
+        text.push_str(
+            "\n`headland plugins KIND` or `headland plugins NAME` tells equation, source and parameters.\n",
+        );
     }
     say.result(&text, &listed)
 }
 
 fn every(registry: &Registry) -> Vec<Listed> {
-    Kind::ALL.iter().flat_map(|kind| registry.cards(*kind).into_iter().map(|card| list(*kind, card))).collect()
+    Kind::ALL
+        .iter()
+        .flat_map(|kind| registry.cards(*kind).into_iter().map(|card| list(*kind, card)))
+        .collect()
 }
 
 fn chosen(registry: &Registry, word: &str) -> Result<Vec<Listed>, Failure> {
@@ -101,7 +106,11 @@ fn line(text: &mut String, one: &Listed) {
 
 fn describe(text: &mut String, one: &Listed) {
     let _ = writeln!(text, "\n  {}\n    {}", one.name, one.about);
-    let _ = writeln!(text, "    equation  {}\n    source    {}\n    holds     {}", one.equation, one.source, one.validity);
+    let _ = writeln!(
+        text,
+        "    equation  {}\n    source    {}\n    holds     {}",
+        one.equation, one.source, one.validity
+    );
     for parameter in &one.parameters {
         let mut facts = Vec::new();
         if !parameter.must_be.is_empty() {

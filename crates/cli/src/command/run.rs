@@ -3,6 +3,8 @@
 use crate::arguments::RunOptions;
 use crate::failure::{Failure, interrupted};
 use crate::output::Output;
+use crate::page;
+use crate::picture;
 use crate::say::Say;
 use headland_plugin::Registry;
 use headland_scenario::{Remark, RunSpec, Scenario};
@@ -38,21 +40,32 @@ pub struct RunSummary {
 
 /// A simulated scenario.
 pub struct Simulated {
-    /// Its traces.
-    pub runs: Vec<Run>,
+    /// Its runs, each with its name.
+    pub runs: Vec<(String, Outcome)>,
     /// What is told of them.
     pub summary: Summary,
 }
 
+impl Simulated {
+    /// The traces of all runs.
+    pub fn traces(&self) -> Vec<Run> {
+        self.runs.iter().map(|(id, outcome)| Run { id: id.clone(), trace: outcome.trace.clone() }).collect()
+    }
+}
+
 /// Runs the command.
 pub fn run(registry: &Registry, options: &RunOptions, say: &Say) -> Result<(), Failure> {
+    picture::possible(options.rerun || options.view)?;
     let scenario = Scenario::read(&options.scenario, registry)?;
     let mut output = Output::new(options.out.as_deref(), &options.scenario)?;
     let begin = Instant::now();
     let simulated = simulate_all(&scenario, registry)?;
     let took_ms = 1e3 * begin.elapsed().as_secs_f64();
-    output.traces("trace.parquet", &simulated.runs)?;
+    let traces = simulated.traces();
+    output.traces("trace.parquet", &traces)?;
     output.json("summary.json", &simulated.summary)?;
+    output.page("report.html", &page::run::page(&scenario, &simulated.runs, &simulated.summary.remarks)?)?;
+    picture::draw(picture::Wanted::of(options.rerun, options.view), &scenario, &traces, &[], &mut output)?;
     say.result(&told(&scenario, &simulated.summary, took_ms, &output), &simulated.summary)?;
     match simulated.summary.runs.iter().find_map(|run| stopped(run)) {
         Some(reason) => Err(Failure::Requirement(reason)),
@@ -70,9 +83,9 @@ pub fn simulate_all(scenario: &Scenario, registry: &Registry) -> Result<Simulate
     }
     let plain = [RunSpec { id: "run".to_owned(), with: Vec::new() }];
     let specs = if scenario.runs.is_empty() { &plain[..] } else { &scenario.runs };
-    let finished: Vec<(Run, RunSummary)> =
+    let runs: Vec<(String, Outcome)> =
         specs.par_iter().map(|spec| simulate_one(scenario, spec, registry)).collect::<Result<_, _>>()?;
-    let (runs, summaries) = finished.into_iter().unzip();
+    let summaries = runs.iter().map(|(id, outcome)| summary_of(id, outcome)).collect();
     let summary = Summary {
         schema: "headland.run/1",
         about: scenario.about.clone(),
@@ -82,7 +95,11 @@ pub fn simulate_all(scenario: &Scenario, registry: &Registry) -> Result<Simulate
     Ok(Simulated { runs, summary })
 }
 
-fn simulate_one(scenario: &Scenario, spec: &RunSpec, registry: &Registry) -> Result<(Run, RunSummary), Failure> {
+fn simulate_one(
+    scenario: &Scenario,
+    spec: &RunSpec,
+    registry: &Registry,
+) -> Result<(String, Outcome), Failure> {
     if interrupted() {
         return Err(Failure::Interrupted);
     }
@@ -90,9 +107,9 @@ fn simulate_one(scenario: &Scenario, spec: &RunSpec, registry: &Registry) -> Res
     let Some(cycle) = &scenario.cycle else {
         return Err(Failure::Input(format!("run {} has no cycle", spec.id)));
     };
-    let outcome = simulate(&scenario.model(registry)?, cycle).map_err(|error| Failure::Machine(error.to_string()))?;
-    let summary = summary_of(&spec.id, &outcome);
-    Ok((Run { id: spec.id.clone(), trace: outcome.trace }, summary))
+    let outcome =
+        simulate(&scenario.model(registry)?, cycle).map_err(|error| Failure::Machine(error.to_string()))?;
+    Ok((spec.id.clone(), outcome))
 }
 
 fn summary_of(id: &str, outcome: &Outcome) -> RunSummary {
@@ -133,7 +150,8 @@ pub fn told_remark(remark: &Remark) -> String {
 fn told(scenario: &Scenario, summary: &Summary, took_ms: f64, output: &Output) -> String {
     let steps: usize = summary.runs.iter().map(|run| run.steps).sum();
     let step_ms = 1e3 * scenario.cycle.as_ref().map_or(0.0, |cycle| cycle.step_s);
-    let mut text = format!("{}\n  longitudinal, {step_ms} ms, {steps} steps in {took_ms:.1} ms\n", scenario.about);
+    let mut text =
+        format!("{}\n  longitudinal, {step_ms} ms, {steps} steps in {took_ms:.1} ms\n", scenario.about);
     for run in &summary.runs {
         let name = if summary.runs.len() > 1 { format!("{:<10} ", run.id) } else { String::new() };
         let _ = writeln!(
@@ -144,7 +162,12 @@ fn told(scenario: &Scenario, summary: &Summary, took_ms: f64, output: &Output) -
             run.distance_m,
             3.6 * run.highest_speed_m_s
         );
-        let _ = writeln!(text, "  {}energy   {}", if name.is_empty() { "" } else { "           " }, told_energy(&run.energy));
+        let _ = writeln!(
+            text,
+            "  {}energy   {}",
+            if name.is_empty() { "" } else { "           " },
+            told_energy(&run.energy)
+        );
     }
     for remark in &summary.remarks {
         let _ = writeln!(text, "  note     {remark}");

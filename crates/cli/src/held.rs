@@ -1,0 +1,161 @@
+//! A scenario held against a recording: read, driven, compared.
+
+use crate::failure::{Failure, interrupted};
+use crate::say::Say;
+use headland_calibrate::study::{Measured, Study, drive_name};
+use headland_compare::{RunComparison, Summary, compare_traces, summarise};
+use headland_plugin::Registry;
+use headland_recording::{Notice, Recording};
+use headland_scenario::Scenario;
+use headland_sim::Outcome;
+use headland_trace::{Origin, Run, Trace};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::path::Path;
+
+/// A run, measured and modelled.
+#[derive(Debug)]
+pub struct Pair {
+    /// What was measured, with what follows from it; NaN where it is not compared.
+    pub measured: Trace,
+    /// What the model made of it.
+    pub outcome: Outcome,
+    /// What they have in common.
+    pub comparison: RunComparison,
+    /// Channels by which the model is judged.
+    pub signals: Vec<String>,
+    /// What drove the model.
+    pub drive: &'static str,
+    /// Samples that are not compared, because brakes may have acted that were not recorded.
+    pub left_out: usize,
+    /// Whether the run is never fitted.
+    pub held_out: bool,
+}
+
+/// Reads a recording, telling about it.
+pub fn read_recording(path: &Path, say: &Say) -> Result<Recording, Failure> {
+    say.progress(&format!("reading {}", path.display()));
+    let recording = headland_recording::load(path)?;
+    let samples: usize = recording.runs.iter().map(|run| run.trace.len()).sum();
+    say.progress(&format!("  {} runs, {samples} samples", recording.runs.len()));
+    Ok(recording)
+}
+
+/// Brings a scenario and a recording together.
+pub fn study<'a>(
+    scenario: &'a Scenario,
+    recording: &Recording,
+    registry: &'a Registry,
+) -> Result<Study<'a>, Failure> {
+    let mut study = Study::new(scenario, recording, registry)
+        .map_err(|error| at(Failure::from(error), &recording.path))?;
+    study.stop = interrupted;
+    Ok(study)
+}
+
+/// A failure with the file that it is about.
+fn at(failure: Failure, path: &Path) -> Failure {
+    match failure {
+        Failure::Input(text) if !text.contains(".ron") => {
+            Failure::Input(format!("{text}\n  {}", path.display()))
+        }
+        other => other,
+    }
+}
+
+/// Drives the model with every run and compares, in parallel; the order is that of the recording.
+pub fn drive(study: &Study, values: &[f64], what: &str, say: &Say) -> Result<Vec<Pair>, Failure> {
+    let bar = say.bar(what, study.runs.len());
+    let pairs = study
+        .runs
+        .par_iter()
+        .map(|run| {
+            let outcome = study.replay(run, values)?;
+            let pair = pair(run, outcome)?;
+            bar.inc(1);
+            Ok(pair)
+        })
+        .collect::<Result<Vec<_>, Failure>>();
+    bar.finish_and_clear();
+    pairs
+}
+
+fn pair(run: &Measured, outcome: Outcome) -> Result<Pair, Failure> {
+    let measured = masked(run)?;
+    let mut comparison = compare_traces(&run.id, &measured, &outcome.trace)?;
+    // A total counts every sample, braked or not: energy does not care who stopped the vehicle.
+    comparison.totals = compare_traces(&run.id, &run.trace, &outcome.trace)?.totals;
+    Ok(Pair {
+        left_out: run.compared.iter().filter(|compared| !**compared).count(),
+        signals: run.signals.clone(),
+        drive: drive_name(run.how.drive),
+        held_out: run.held_out,
+        measured,
+        outcome,
+        comparison,
+    })
+}
+
+/// The measured channels without the samples that are not compared.
+fn masked(run: &Measured) -> Result<Trace, Failure> {
+    let mut masked = Trace::new(run.trace.time_s().to_vec())?;
+    for channel in run.trace.channels() {
+        let mut values = channel.values.clone();
+        if run.signals.contains(&channel.name) {
+            for (value, compared) in values.iter_mut().zip(&run.compared) {
+                if !compared {
+                    *value = f64::NAN;
+                }
+            }
+        }
+        masked.push(channel.name.clone(), values, channel.origin)?;
+    }
+    Ok(masked)
+}
+
+/// All runs at a glance.
+pub fn summary(pairs: &[Pair]) -> Summary {
+    let runs: Vec<RunComparison> = pairs.iter().map(|pair| pair.comparison.clone()).collect();
+    summarise(&runs)
+}
+
+/// The modelled runs, each with what was measured of it under `measured_…`.
+pub fn traces(pairs: &[Pair]) -> Result<Vec<Run>, Failure> {
+    let run = |pair: &Pair| {
+        let mut trace = pair.outcome.trace.clone();
+        for name in pair.signals.iter().map(String::as_str).chain(["speed_m_s"]) {
+            let twin = format!("measured_{name}");
+            if let Some(values) = pair.measured.get(name)
+                && trace.channel(&twin).is_none()
+            {
+                trace.push(twin, values.to_vec(), Origin::Measured)?;
+            }
+        }
+        Ok(Run { id: pair.comparison.run.clone(), trace })
+    };
+    pairs.iter().map(run).collect()
+}
+
+/// A notice as it stands in JSON.
+#[derive(Clone, Debug, Serialize)]
+pub struct ToldNotice {
+    run: String,
+    channel: Option<String>,
+    kind: &'static str,
+    text: String,
+    count: usize,
+    first_s: Option<f64>,
+}
+
+/// Notices as they stand in JSON.
+pub fn told_notices(notices: &[Notice]) -> Vec<ToldNotice> {
+    let told = |notice: &Notice| ToldNotice {
+        run: notice.run.clone(),
+        channel: notice.channel.clone(),
+        kind: notice.kind.name(),
+        text: notice.text.clone(),
+        count: notice.count,
+        first_s: notice.first_s,
+    };
+    notices.iter().map(told).collect()
+}

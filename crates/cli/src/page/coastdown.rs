@@ -1,0 +1,299 @@
+//! The page of a coast-down analysis.
+
+use super::short;
+use crate::command::coastdown::{Analysis, with_interval};
+use headland_calibrate::coastdown::{CoastDown, Curve, Estimate, TwoStage};
+use headland_recording::Recording;
+use headland_report::{
+    Axis, Cell, Cumulative, Figure, Item, Line, Lines, Plot, Report, ReportError, Section, Series, Steps,
+    Table,
+};
+
+/// Makes the page.
+pub fn page(recording: &Recording, analysis: &Analysis) -> Result<Report, ReportError> {
+    let result = analysis.result();
+    let lede = format!(
+        "Rolling resistance and road loads from {} coast-downs: {}.",
+        result.runs.len(),
+        result.speed_law.as_ref().and_then(|law| law.fit.estimates.first()).map_or_else(
+            || "no coefficient could be determined".to_owned(),
+            |c_w| format!("c_w = {}", with_interval(c_w))
+        )
+    );
+    let mut report = Report::new(recording.about.clone(), lede)
+        .with(glance(result))
+        .with(fit(analysis))
+        .with(runs(result));
+    if let Some(two) = &result.two_stage {
+        report = report.with(two_stage(two, analysis));
+    }
+    if let Some(section) = super::notices(&recording.notices, analysis.assumed()) {
+        report = report.with(section);
+    }
+    Ok(report)
+}
+
+fn glance(result: &CoastDown) -> Section {
+    let mut figures = Vec::new();
+    if let Some(law) = &result.speed_law {
+        for estimate in &law.fit.estimates {
+            figures.push(figure(estimate));
+        }
+    }
+    if let Some(two) = &result.two_stage {
+        let words = "the paper's two stages, without rotating mass";
+        figures.push(Figure::text("c_w of the two-stage method", short(two.kept.by_samples)).note(words));
+    }
+    let mut section = Section::new("At a glance").with(Item::Figures(figures));
+    let told: Vec<String> = result
+        .null_space
+        .iter()
+        .cloned()
+        .chain(result.left_out.iter().map(|one| one.reason.clone()))
+        .collect();
+    if !told.is_empty() {
+        section = section.with(Item::Sentences(told));
+    }
+    section
+}
+
+fn figure(estimate: &Estimate) -> Figure {
+    let unit = if estimate.unit == "1" { "" } else { &estimate.unit };
+    let note = estimate.interval_95.map_or_else(
+        || "too few runs for an interval".to_owned(),
+        |[low, high]| format!("95 %: {}", headland_report::with_interval(estimate.value, low, high).1),
+    );
+    Figure::new(estimate.name.clone(), estimate.value, unit).note(note)
+}
+
+fn fit(analysis: &Analysis) -> Section {
+    let result = analysis.result();
+    let mut section = Section::new("Fit of speed over time")
+        .words("All runs are fitted at once by the speed itself, which is never differentiated; each has its own initial speed.")
+        .with(estimates("Road load F = f0 + f1 v + f2 v², v in m/s, level and calm", &result.road_load.fit.estimates));
+    if let Some(law) = &result.speed_law {
+        let title = format!("Speed law c_w (1 + v/100), v in {}", law.unit.symbol());
+        section = section.with(estimates(&title, &law.fit.estimates)).with(units(result));
+    }
+    section.with(speeds(&analysis.curves)).with(residuals(&analysis.curves)).with(forces(result))
+}
+
+fn estimates(title: &str, estimates: &[Estimate]) -> Table {
+    let row = |estimate: &Estimate| {
+        let value = estimate.value;
+        let cell = estimate.interval_95.map_or(Cell::Number(value), |[lower, upper]| Cell::Interval {
+            value,
+            lower,
+            upper,
+        });
+        vec![
+            Cell::from(estimate.name.clone()),
+            Cell::from(if estimate.unit == "1" { "" } else { &estimate.unit }),
+            cell,
+            estimate.standard_error.unwrap_or(f64::NAN).into(),
+            estimate.degrees_of_freedom.unwrap_or(f64::NAN).into(),
+        ]
+    };
+    Table {
+        title: title.to_owned(),
+        columns: ["parameter", "unit", "estimate (95 % interval)", "standard error", "degrees of freedom"]
+            .map(|name| Axis::new(name, ""))
+            .to_vec(),
+        rows: estimates.iter().map(row).collect(),
+    }
+}
+
+fn units(result: &CoastDown) -> Table {
+    let readings = result.speed_law.iter().flat_map(|law| &law.units);
+    Table {
+        title: "The same runs read with each unit of v".to_owned(),
+        columns: vec![
+            Axis::new("unit", ""),
+            Axis::new("c_w", ""),
+            Axis::new("RMS of the residual", "m/s"),
+            Axis::new("scatter between runs, over weight", ""),
+        ],
+        rows: readings
+            .map(|one| {
+                vec![one.unit.symbol().into(), one.c_w.into(), one.rms_m_s.into(), one.between_runs_sd.into()]
+            })
+            .collect(),
+    }
+}
+
+fn since_start(curve: &Curve) -> Vec<f64> {
+    let first = curve.time_s.first().copied().unwrap_or(0.0);
+    curve.time_s.iter().map(|time| time - first).collect()
+}
+
+fn speeds(curves: &[Curve]) -> Plot {
+    let series = curves
+        .iter()
+        .flat_map(|curve| {
+            let time = since_start(curve);
+            [
+                Series::new(curve.run.clone(), time.clone(), curve.measured_m_s.clone()).drawn(Line::Dots),
+                Series::new(format!("{}, fit", curve.run), time, curve.fitted_m_s.clone()),
+            ]
+        })
+        .collect();
+    Plot::new("Speed of each coast-down", Lines::over_time(Axis::of("speed_m_s"), series))
+        .words("Dots are measured, lines are the fit. Time counts from the start of each coast-down.")
+}
+
+fn residuals(curves: &[Curve]) -> Plot {
+    let series = curves
+        .iter()
+        .map(|curve| {
+            let residual: Vec<f64> =
+                curve.fitted_m_s.iter().zip(&curve.measured_m_s).map(|(fit, speed)| fit - speed).collect();
+            Series::new(curve.run.clone(), since_start(curve), residual)
+        })
+        .collect();
+    Plot::new("Fit minus measured", Lines::over_time(Axis::new("residual of speed", "m/s"), series))
+}
+
+fn forces(result: &CoastDown) -> Plot {
+    let forces = &result.road_load.forces;
+    let speed: Vec<f64> = forces.iter().map(|at| at.speed_m_s).collect();
+    let force: Vec<f64> = forces.iter().map(|at| at.force_n).collect();
+    let end = |index: usize| -> Vec<f64> {
+        forces.iter().map(|at| at.interval_95.map_or(f64::NAN, |ends| ends[index])).collect()
+    };
+    let mut series = Series::new("resistance (95 % band)", speed, force);
+    if forces.iter().all(|at| at.interval_95.is_some()) {
+        series = series.band(end(0), end(1));
+    }
+    Plot::new(
+        "Resistance on level ground in calm air",
+        Lines::over(Axis::of("speed_m_s"), Axis::new("resistance", "N"), vec![series]),
+    )
+}
+
+fn runs(result: &CoastDown) -> Section {
+    let run = |row: &headland_calibrate::coastdown::RunRow| {
+        vec![
+            Cell::from(row.run.clone()),
+            Cell::from(row.path.clone().unwrap_or_default() + if row.reversed { " (back)" } else { "" }),
+            (3.6 * row.initial_m_s).into(),
+            row.duration_s.into(),
+            row.apparent_resistance_n.into(),
+            row.c_w.unwrap_or(f64::NAN).into(),
+            row.c_w_apparent.unwrap_or(f64::NAN).into(),
+            row.offset_in_sd.into(),
+            row.rms_m_s.into(),
+        ]
+    };
+    let table = Table {
+        title: "Runs".to_owned(),
+        columns: vec![
+            Axis::new("run", ""),
+            Axis::new("path", ""),
+            Axis::new("from", "km/h"),
+            Axis::new("duration", "s"),
+            Axis::new("mean resistance", "N"),
+            Axis::new("c_w of its own", ""),
+            Axis::new("as if level and calm", ""),
+            Axis::new("off the pool", "σ"),
+            Axis::new("RMS of the residual", "m/s"),
+        ],
+        rows: result.runs.iter().map(run).collect(),
+    };
+    let mut section = Section::new("Runs and pairs").with(table);
+    if result.pairs.is_empty() {
+        return section.with(Item::Words(
+            "No two runs drove the same path in opposite directions, so that grade, wind and rolling resistance are not \
+             separated."
+                .to_owned(),
+        ));
+    }
+    let pair = |row: &headland_calibrate::coastdown::PairRow| {
+        vec![
+            Cell::from(format!("{} and {}", row.forward, row.reversed)),
+            row.resistance_n.into(),
+            row.asymmetry_n.into(),
+            (100.0 * row.as_grade).into(),
+            row.as_headwind_m_s.unwrap_or(f64::NAN).into(),
+            row.c_w.unwrap_or(f64::NAN).into(),
+        ]
+    };
+    section = section.with(Table {
+        title: "Pairs in opposite directions".to_owned(),
+        columns: vec![
+            Axis::new("runs", ""),
+            Axis::new("resistance", "N"),
+            Axis::new("difference by direction", "N"),
+            Axis::new("read as grade", "%"),
+            Axis::new("read as head wind", "m/s"),
+            Axis::new("c_w", ""),
+        ],
+        rows: result.pairs.iter().map(pair).collect(),
+    });
+    section
+}
+
+fn two_stage(two: &TwoStage, analysis: &Analysis) -> Section {
+    let run = |one: &headland_calibrate::coastdown::RunCoefficient| {
+        vec![
+            Cell::from(one.run.clone()),
+            Cell::Number(one.samples as f64),
+            Cell::Number(one.kept as f64),
+            one.median.into(),
+            one.mean.into(),
+            one.weight.into(),
+            Cell::from(if one.outlier { "outlier" } else { "" }),
+        ]
+    };
+    let runs = Table {
+        title: "First stage: samples to runs".to_owned(),
+        columns: ["run", "samples", "within 5 to 95 %", "median", "mean", "weight", ""]
+            .map(|name| Axis::new(name, ""))
+            .to_vec(),
+        rows: two.runs.iter().map(run).collect(),
+    };
+    let mut rows = Vec::new();
+    let with_rotating = analysis.result().two_stage_with_rotating_mass.as_ref();
+    for (mass, two) in [("as published", Some(two)), ("with rotating mass", with_rotating)] {
+        let Some(two) = two else { continue };
+        for (what, pool) in [("without outliers", &two.kept), ("all runs", &two.all)] {
+            rows.push(vec![
+                Cell::from(format!("{mass}, {what}")),
+                pool.by_samples.into(),
+                pool.by_runs.into(),
+                pool.by_medians.into(),
+            ]);
+        }
+    }
+    let pools = Table {
+        title: "Second stage: runs to one coefficient".to_owned(),
+        columns: ["pool", "by samples", "by run means", "by run medians"]
+            .map(|name| Axis::new(name, ""))
+            .to_vec(),
+        rows,
+    };
+    let words = "A coefficient a sample from differentiated speed, a median a run, a pool of the runs that are no \
+                 outliers. The study leaves open whether samples or runs are pooled, so both stand here.";
+    Section::new("The two-stage method")
+        .words(words)
+        .with(pools)
+        .with(runs)
+        .with(distribution(&analysis.samples))
+}
+
+fn distribution(samples: &[(String, Vec<f64>)]) -> Plot {
+    let steps = samples
+        .iter()
+        .map(|(run, values)| {
+            let mut x: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+            x.sort_by(f64::total_cmp);
+            // The outermost samples are what differentiation makes of noise; they would squeeze the rest.
+            let outer = x.len() / 20;
+            let all = x.len() as f64;
+            let probability = (outer..x.len() - outer).map(|rank| (rank + 1) as f64 / all).collect();
+            Steps { name: run.clone(), x: x[outer..x.len() - outer].to_vec(), probability, band: None }
+        })
+        .collect();
+    let cumulative = Cumulative { axis: Axis::new("c_w of a sample", ""), steps };
+    Plot::new("Cumulative probability of the coefficient of a sample", cumulative)
+        .words("Between the 5th and the 95th percentile, which is what the method keeps.")
+}

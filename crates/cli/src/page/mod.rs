@@ -1,0 +1,49 @@
+//! The pages that commands write.
+
+pub mod calibrate;
+pub mod coastdown;
+pub mod compare;
+mod energy;
+mod motion;
+pub mod run;
+
+use headland_recording::Notice;
+use headland_report::{Axis, Cell, Item, Section, Table};
+
+/// A number with four significant digits.
+pub fn short(value: f64) -> String {
+    headland_report::number(value)
+}
+
+/// Most rows of notices on a page.
+const NOTICES: usize = 60;
+
+/// What recordings show about themselves and what was decided on the way; nothing where there is nothing.
+fn notices(notices: &[Notice], notes: &[String]) -> Option<Section> {
+    if notices.is_empty() && notes.is_empty() {
+        return None;
+    }
+    let mut section = Section::new("What to know about the data")
+        .words("Nothing of it was repaired: the logs were used as they are.");
+    if !notes.is_empty() {
+        section = section.with(Item::Sentences(notes.to_vec()));
+    }
+    if !notices.is_empty() {
+        let row = |notice: &Notice| {
+            let run = if notice.run.is_empty() { "all" } else { &notice.run };
+            vec![Cell::from(run), Cell::from(notice.kind.name()), Cell::from(notice.text.clone())]
+        };
+        let shown = notices.len().min(NOTICES);
+        let title = if shown < notices.len() {
+            format!("Notices, the first {shown} of {}", notices.len())
+        } else {
+            "Notices".to_owned()
+        };
+        section = section.with(Table {
+            title,
+            columns: ["run", "kind", "what was seen"].map(|name| Axis::new(name, "")).to_vec(),
+            rows: notices.iter().take(NOTICES).map(row).collect(),
+        });
+    }
+    Some(section)
+}

@@ -42,8 +42,9 @@ impl Plugin for Grade {
 
 /// Force of a grade that is added to the known one [N].
 pub(crate) fn force_n(at: &Situation, added: f64) -> f64 {
-    let grade = at.place.grade() + added;
-    at.mass_kg * at.gravity_m_s2 * (at.place.sin_slope - grade / grade.hypot(1.0))
+    // Grades are written as the path is: seen from the other end, uphill is downhill.
+    let grade = at.place.grade() + if at.reversed { -added } else { added };
+    at.mass_kg * at.gravity_m_s2 * (at.place.sin_slope - grade / (1.0 + grade * grade).sqrt())
 }
 
 impl Effect for Grade {

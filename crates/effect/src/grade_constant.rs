@@ -3,7 +3,7 @@
 //! F = −m g (sin(atan(q₀ + q)) − sin(atan q₀))        q₀ the known grade
 //!
 //! Source: Newton's second law on an incline; Mitschke and Wallentowitz, *Dynamik der Kraftfahrzeuge* (2014), chapter A.
-//! Positive uphill in the direction of travel. Leaves out the cosine of the added slope in the load on the ground.
+//! Positive uphill in the direction of the path; a run that is driven the other way goes downhill. Leaves out the cosine of the added slope in the load on the ground.
 //! Fingerprint: a constant force, proportional to mass; runs in the other direction show it with the other sign.
 
 use crate::grade::force_n;
@@ -52,6 +52,12 @@ mod tests {
         let mut at = at_10_m_s();
         at.place.sin_slope = 0.1;
         assert!(act::<GradeConstant>("(grade: 0.0)", &at).force_n.abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_run_the_other_way_goes_downhill() {
+        let at = Situation { reversed: true, ..at_10_m_s() };
+        assert!(same(act::<GradeConstant>("(grade: 0.75)", &at).force_n, 12e3));
     }
 
     #[test]

@@ -14,9 +14,7 @@ pub(crate) fn at_10_m_s() -> Situation {
         place: Place::default(),
         air: Air { density_kg_m3: 1.2, wind_speed_m_s: 0.0, wind_from_rad: 0.0, temperature_c: 5.0 },
         drag_area_m2: 1.0,
-        coasting: false,
-        braking: false,
-        tractive_force_n: 0.0,
+        ..Situation::default()
     }
 }
 

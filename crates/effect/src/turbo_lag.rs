@@ -4,7 +4,8 @@
 //!
 //! Source: first-order lag of charge pressure behind demand; Guzzella and Onder, *Introduction to Modeling and Control of Internal
 //! Combustion Engine Systems* (2010), section 2.6, linearised.
-//! P_na is the power at the wheels that needs no boost, x the power that boost gives. Limits the drive, not a recorded force.
+//! P_na is the power at the wheels that needs no boost, x the power that boost gives. Limits what a driver asks for:
+//! what was recorded, as force or as motion, came about.
 //! Fingerprint: for a second after a step of load the vehicle falls behind what the driver asks, then catches up.
 
 use headland_plugin::{Action, Bound, Card, Effect, Plugin, Situation, State, parameter};
@@ -25,7 +26,7 @@ impl Plugin for TurboLag {
         equation: "F v ≤ P_na + x, dx/dt = (max(0, F_wanted v − P_na) − x)/τ, x(0) = 0",
         source: "first-order lag of charge pressure; Guzzella and Onder, Introduction to Modeling and Control of Internal \
                  Combustion Engine Systems (2010), section 2.6, linearised",
-        validity: "limits what a driver asks for, not a recorded force; leaves out the fuel that smoke limits save",
+        validity: "limits what a driver asks for, not a recorded force or motion; leaves out the fuel that smoke limits save",
         parameters: &[
             parameter("time_constant_s", "s", "of the charge pressure, τ")
                 .must_be(Bound::Positive)

@@ -44,7 +44,8 @@ pub trait Effect: Debug + Send + Sync {
     /// an effect adds must not depend on them. The force at the wheels is not known yet.
     fn act(&self, at: &Situation, states: &[f64], rates: &mut [f64]) -> Action;
 
-    /// Least and greatest force at the wheels [N] that it allows the driveline; recorded forces are beyond its reach.
+    /// Least and greatest force at the wheels [N] that it allows the driveline. A recorded force is beyond its reach, and
+    /// so is the force that drove a recorded motion; of that, what it does not allow in braking is left to the brakes.
     fn limits_n(&self, at: &Situation, states: &[f64]) -> (f64, f64) {
         let _ = (at, states);
         (f64::NEG_INFINITY, f64::INFINITY)

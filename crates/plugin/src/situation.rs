@@ -22,6 +22,8 @@ pub struct Situation {
     pub time_s: f64,
     /// Distance along the path [m].
     pub position_m: f64,
+    /// Whether the path is driven from its end towards its start; `place` is already seen in the direction of travel.
+    pub reversed: bool,
     /// Speed over ground [m/s].
     pub speed_m_s: f64,
     /// Mass that rests on the wheels [kg].

@@ -27,6 +27,8 @@ pub(crate) enum Command {
 /// What a recording knows better than the model.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Given {
+    /// Where the path is driven towards its start from [m]; positions then count what was travelled.
+    pub reversed_from_m: Option<f64>,
     pub sin_slope: Option<f64>,
     pub heading_rad: Option<f64>,
     pub curvature_per_m: Option<f64>,
@@ -34,6 +36,8 @@ pub(crate) struct Given {
     pub auxiliary_power_w: Option<f64>,
     pub drawbar_force_n: Option<f64>,
     pub braking: bool,
+    /// Whether the motion is recorded: then it was driven, whatever effects would have allowed.
+    pub driven: bool,
 }
 
 /// Everything that is known at one instant.
@@ -145,7 +149,7 @@ impl Model {
             }
         };
         situation.tractive_force_n = wanted_n;
-        demand.force_n = self.govern(&situation, command, layout, states, rates);
+        demand.force_n = self.govern(&situation, command, given, layout, states, rates);
         let slip_of = |force_n: f64| {
             let slip = (sums.slip_per_n * force_n * direction).clamp(-MOST_SLIP, MOST_SLIP);
             speed_m_s / (1.0 - slip)
@@ -236,6 +240,7 @@ impl Model {
         &self,
         situation: &Situation,
         command: Command,
+        given: &Given,
         layout: &Layout,
         states: &[f64],
         rates: &mut [f64],
@@ -248,12 +253,18 @@ impl Model {
             (least_n, most_n) = (least_n.max(least), most_n.min(most));
         }
         let wanted_n = situation.tractive_force_n;
+        let most_n = if given.driven { f64::INFINITY } else { most_n };
         if let Command::Accelerate(_) = command { wanted_n.max(least_n).min(most_n) } else { wanted_n }
     }
 
     /// Where the vehicle is, and in what air.
     fn situation(&self, point: Point, command: Command, given: &Given) -> Situation {
-        let mut place = self.terrain.at(point.position_m);
+        let position_m = given.reversed_from_m.map_or(point.position_m, |from_m| from_m - point.position_m);
+        let mut place = self.terrain.at(position_m);
+        if given.reversed_from_m.is_some() {
+            place.sin_slope = -place.sin_slope;
+            place.heading_rad += std::f64::consts::PI;
+        }
         if let Some(sin_slope) = given.sin_slope {
             place.sin_slope = sin_slope;
         }
@@ -265,7 +276,8 @@ impl Model {
         }
         Situation {
             time_s: point.time_s,
-            position_m: point.position_m,
+            position_m,
+            reversed: given.reversed_from_m.is_some(),
             speed_m_s: point.speed_m_s,
             mass_kg: self.vehicle.mass_kg,
             gravity_m_s2: self.gravity_m_s2,

@@ -174,8 +174,14 @@ fn a_limit_holds_what_the_driver_asks_and_not_what_was_recorded() {
     let outcome = drive(&limited, 1.0, vec![Phase::Reach { speed_m_s: 2.0, acceleration_m_s2: 1.0 }]);
     assert!((outcome.trace.duration_s() - 2.0).abs() < 1e-9);
     let unlimited = drive(&model(vec![]), 1.0, vec![Phase::Reach { speed_m_s: 2.0, acceleration_m_s2: 1.0 }]);
-    let how =
-        Replay { drive: Drive::Force, also: Vec::new(), window_s: None, smoothing_s: 0.05, step_s: 0.01 };
+    let how = Replay {
+        drive: Drive::Force,
+        also: Vec::new(),
+        window_s: None,
+        smoothing_s: 0.05,
+        step_s: 0.01,
+        reversed_from_m: None,
+    };
     let replayed = replay(&limited, &unlimited.trace, &how).unwrap();
     assert!((last(&replayed, "speed_m_s") - 2.0).abs() < 1e-3);
 }

@@ -286,6 +286,7 @@ fn a_replay_of_the_models_own_drive_repeats_it() {
         window_s,
         smoothing_s: 0.05,
         step_s: 0.02,
+        reversed_from_m: None,
     };
     let forward = replay(&model, &original, &how(Drive::Force, None)).unwrap();
     let worst = forward

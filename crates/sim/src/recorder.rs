@@ -11,13 +11,15 @@ pub(crate) struct Recorder {
     time_s: Vec<f64>,
     names: Vec<String>,
     columns: Vec<Vec<f64>>,
+    first_effect: usize,
 }
 
-const MOTION: [&str; 18] = [
+const MOTION: [&str; 19] = [
     "position_m",
     "speed_m_s",
     "wheel_speed_m_s",
     "acceleration_m_s2",
+    "effective_mass_kg",
     "elevation_m",
     "grade",
     "heading_rad",
@@ -44,13 +46,17 @@ impl Recorder {
         names.push("coasting".to_owned());
         names.extend(headland_plugin::Readings::NONE.channels().map(|(name, _)| name.to_owned()));
         names.extend(machine.layout.states.iter().map(|(name, _)| name.clone()));
+        let first_effect = names.len();
         for effect in &machine.model.effects {
-            for unit in ["n", "w", "kg"] {
-                names.push(format!("{}_{unit}", effect.name));
+            for unit in EFFECT_UNITS {
+                let name = format!("{}_{unit}", effect.name);
+                // `auxiliary_power_w` is what all consumers take, not this effect alone.
+                let taken = names.contains(&name);
+                names.push(if taken { format!("{}_effect_{unit}", effect.name) } else { name });
             }
         }
         let columns = vec![Vec::new(); names.len()];
-        Self { time_s: Vec::new(), names, columns }
+        Self { time_s: Vec::new(), names, columns, first_effect }
     }
 
     pub fn last_time_s(&self) -> Option<f64> {
@@ -60,10 +66,11 @@ impl Recorder {
     pub fn push(&mut self, machine: &Machine, instant: &Instant) {
         let place = instant.situation.place;
         let motion = [
-            machine.position_m(),
+            instant.situation.position_m,
             machine.speed_m_s(),
             instant.wheel_speed_m_s,
             instant.acceleration_m_s2,
+            instant.effective_mass_kg,
             place.elevation_m,
             place.grade(),
             place.heading_rad,
@@ -94,11 +101,9 @@ impl Recorder {
 
     pub fn finish(self) -> Result<Trace, TraceError> {
         let mut trace = Trace::new(self.time_s)?;
-        let fixed = MOTION.len() + 1;
         for (index, (name, values)) in self.names.into_iter().zip(self.columns).enumerate() {
             let absent = values.iter().all(|value| value.is_nan());
-            let optional = ONLY_IF_USED.contains(&name.as_str())
-                || (index >= fixed && ["_n", "_w", "_kg"].iter().any(|unit| name.ends_with(unit)));
+            let optional = ONLY_IF_USED.contains(&name.as_str()) || index >= self.first_effect;
             let unused = optional && values.iter().all(|value| *value == 0.0);
             if !absent && !unused {
                 trace.push(name, values, Origin::Predicted)?;
@@ -108,8 +113,16 @@ impl Recorder {
     }
 }
 
-/// Net forward force, power and mass of an effect.
-fn effect_row(instant: &Instant, action: &Action) -> [f64; 3] {
+/// What is written of an effect: net forward force, power, mass in inertia, friction torque, resistance.
+const EFFECT_UNITS: [&str; 5] = ["n", "w", "kg", "n_m", "ohm"];
+
+fn effect_row(instant: &Instant, action: &Action) -> [f64; EFFECT_UNITS.len()] {
     let way = if instant.situation.speed_m_s < 0.0 { -1.0 } else { 1.0 };
-    [action.force_n - way * instant.resistance_n(action), instant.power_w(action), action.mass_kg]
+    [
+        action.force_n - way * instant.resistance_n(action),
+        instant.power_w(action),
+        action.mass_kg + action.rotating_mass_kg,
+        action.engine_friction_n_m,
+        action.battery_resistance_ohm,
+    ]
 }

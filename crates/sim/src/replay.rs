@@ -38,6 +38,10 @@ pub struct Replay {
     pub smoothing_s: f64,
     /// Longest step of the integration [s].
     pub step_s: f64,
+    /// Where the path is driven towards its start from [m]; `None` where it is driven towards its end.
+    ///
+    /// Recorded positions count along the path where they fall, and from the run's own start where they grow.
+    pub reversed_from_m: Option<f64>,
 }
 
 /// A recorded circumstance.
@@ -124,6 +128,7 @@ pub fn replay(model: &Model, recorded: &Trace, how: &Replay) -> Result<Outcome, 
 
 /// The recorded inputs.
 struct Tape<'a> {
+    reversed_from_m: Option<f64>,
     time_s: &'a [f64],
     motion: LocalFit,
     position_m: Vec<f64>,
@@ -141,9 +146,12 @@ impl<'a> Tape<'a> {
         let time_s = recorded.time_s();
         let speed = recorded.require("speed_m_s").map_err(ReplayError::Missing)?;
         let motion = local_fit(time_s, speed, how.smoothing_s);
-        let position_m = match recorded.get("position_m") {
-            Some(position) => position.to_vec(),
-            None => travelled(time_s, &motion.value),
+        let position_m = match (recorded.get("position_m"), how.reversed_from_m) {
+            (Some(position), Some(from_m)) if position.last() < position.first() => {
+                position.iter().map(|position| from_m - position).collect()
+            }
+            (Some(position), _) => position.to_vec(),
+            (None, _) => travelled(time_s, &motion.value),
         };
         let push = match how.drive {
             Drive::Speed | Drive::Coast => None,
@@ -168,12 +176,13 @@ impl<'a> Tape<'a> {
             also.push((*input, columns));
         }
         let state_of_charge = recorded.get("state_of_charge");
-        Ok(Self { time_s, motion, position_m, push, also, state_of_charge })
+        let reversed_from_m = how.reversed_from_m;
+        Ok(Self { reversed_from_m, time_s, motion, position_m, push, also, state_of_charge })
     }
 
     /// The circumstances at a share of the way from sample `index` to the next, and whether the vehicle coasts.
     fn given(&self, model: &Model, index: usize, share: f64) -> (Given, bool) {
-        let mut given = Given::default();
+        let mut given = Given { reversed_from_m: self.reversed_from_m, ..Given::default() };
         let mut coasting = false;
         for (input, columns) in &self.also {
             let value = |column: usize| {
@@ -218,6 +227,7 @@ impl<'a> Tape<'a> {
         let mut before: Vec<f64> = Vec::new();
         for (index, &time_s) in self.time_s.iter().enumerate() {
             let (given, coasting) = self.given(model, index, 0.0);
+            let given = Given { driven: true, ..given };
             let wanted = self.motion.slope[index];
             let stands = self.motion.value[index].abs() < STANDSTILL_M_S;
             let speed = if stands { 0.0 } else { self.motion.value[index] };

@@ -109,7 +109,7 @@ fn drive(model: &Model) -> Outcome {
     simulate(model, &cycle).unwrap()
 }
 
-/// Value of a channel where another is nearest to `target`, and before its end; 0 where the channel was left out.
+/// Value of a channel at a time; 0 where the channel was left out.
 fn at_time(outcome: &Outcome, channel: &str, time_s: f64) -> f64 {
     let trace = &outcome.trace;
     let index = trace.time_s().partition_point(|time| *time < time_s - 1e-9);
@@ -196,4 +196,36 @@ fn all_effects_at_once_close_the_ledger() {
         assert_eq!(outcome.end, End::Finished);
         assert!(outcome.ledger.relative_residual() < 1e-5, "{:?}", outcome.ledger);
     }
+}
+
+/// The path climbs at 0.005 everywhere and by 0.04 more beyond 50 m; driven from its end, both fall.
+#[test]
+fn a_run_against_the_path_meets_its_slopes_from_the_other_end() {
+    let effect = ("grade", "(positions_m: [50.0, 50.1], grades: [0.0, 0.04])");
+    let model = model(false, &[effect]);
+    let original = drive(&model);
+    let how = Replay {
+        drive: Drive::Speed,
+        also: Vec::new(),
+        window_s: None,
+        smoothing_s: 0.021,
+        step_s: 0.01,
+        reversed_from_m: Some(90.0),
+    };
+    let back = replay(&model, &original.trace, &how).unwrap();
+    let (early_s, late_s) = (3.2, 11.0);
+    let position = |time_s: f64| at_time(&back, "position_m", time_s);
+    assert!((position(early_s) + at_time(&original, "position_m", early_s) - 90.0).abs() < 0.05);
+    assert!(
+        position(early_s) > 50.1 && position(late_s) < 50.0,
+        "{} {}",
+        position(early_s),
+        position(late_s)
+    );
+    let weight_n = 1300.0 * 9.81;
+    let slope_n = at_time(&back, "slope_resistance_n", early_s);
+    assert!((slope_n / (-0.005 * weight_n) - 1.0).abs() < 1e-4, "{slope_n}");
+    let effect_n = at_time(&back, "grade_n", early_s);
+    assert!((effect_n / (0.04 * weight_n) - 1.0).abs() < 2e-3, "{effect_n}");
+    assert_eq!(at_time(&back, "grade_n", late_s), 0.0);
 }

@@ -66,7 +66,9 @@ impl Judged {
         let scatter = self.fitted.pooled.variance(direction);
         let systematic = (self.systematic.transpose() * direction).norm_squared();
         let degrees = self.fitted.pooled.degrees_of_freedom(direction);
-        if degrees.is_nan() || degrees < LEAST_DEGREES {
+        let directional = |term: &&Term| matches!(term, Term::Grade { .. } | Term::Headwind { .. });
+        let levels = 1 + self.fitted.terms.iter().filter(directional).count();
+        if self.fitted.clusters.len() <= levels || degrees.is_nan() || degrees < LEAST_DEGREES {
             return (value, None);
         }
         let (interval, degrees) = student_interval(value, scatter, degrees, systematic, LEVEL);

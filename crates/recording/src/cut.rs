@@ -5,10 +5,10 @@ use crate::look::counted;
 use crate::{Notice, NoticeKind};
 use headland_trace::Trace;
 
-/// Pieces shorter than this are left out unless the description says otherwise [s].
+/// Pieces shorter than this are left out unless the description says otherwise (s).
 const SHORTEST_S: f64 = 10.0;
 
-/// The stretches of a trace that are runs, with their times [s], and what to say about it.
+/// The stretches of a trace that are runs, with their times (s), and what to say about it.
 pub(crate) fn pieces(
     trace: Trace,
     segments: &[Segment],

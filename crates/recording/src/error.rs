@@ -228,9 +228,9 @@ pub enum RecordingError {
     Backwards {
         /// The later row.
         at: Place,
-        /// Time of the row before [s].
+        /// Time of the row before (s).
         before_s: f64,
-        /// Its time [s].
+        /// Its time (s).
         after_s: f64,
     },
     /// A byte that the encoding does not have.

@@ -73,7 +73,7 @@ pub struct Notice {
     pub text: String,
     /// How many samples, rows or places it is about.
     pub count: usize,
-    /// Time of the first of them [s], where it has one.
+    /// Time of the first of them (s), where it has one.
     pub first_s: Option<f64>,
 }
 

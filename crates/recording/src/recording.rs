@@ -76,7 +76,7 @@ pub struct Known {
 pub struct Sensor {
     /// One standard deviation of a sample.
     pub noise: Option<f64>,
-    /// How late a value is [s].
+    /// How late a value is (s).
     pub latency_s: Option<f64>,
     /// What it reads, divided by what is true.
     pub scale: Option<f64>,

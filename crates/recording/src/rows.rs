@@ -130,8 +130,17 @@ impl<'a> Rows<'a> {
         self.table.time_s.push(now_s);
         for (index, output) in self.plan.outputs.iter().enumerate() {
             let Some(kept) = &mut self.table.columns[index] else { continue };
-            let mut cells = output.columns.iter().map(|column| (*column, number(&record[*column], comma)));
-            if let Some((column, _)) = cells.find(|(_, cell)| *cell == Cell::Text) {
+            let mut text = None;
+            let value =
+                output.value(output.columns.iter().map(|column| match number(&record[*column], comma) {
+                    Cell::Number(value) => value,
+                    Cell::Missing => f64::NAN,
+                    Cell::Text => {
+                        text = text.or(Some(*column));
+                        f64::NAN
+                    }
+                }));
+            if let Some(column) = text {
                 if output.strict || self.numbers_seen[index] {
                     return Err(self.cell(
                         record,
@@ -146,11 +155,6 @@ impl<'a> Rows<'a> {
                 notices.push(Notice::new(self.run, NoticeKind::Text, text).channel(&output.name));
                 continue;
             }
-            let value =
-                output.value(output.columns.iter().map(|column| match number(&record[*column], comma) {
-                    Cell::Number(value) => value,
-                    _ => f64::NAN,
-                }));
             self.numbers_seen[index] |= !value.is_nan();
             kept.push(value);
         }

@@ -11,7 +11,7 @@ use headland_units::{Dimension, Unit, parse_unit};
 /// How a row tells its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum TimePlan {
-    /// Not at all: rows are this far apart [s].
+    /// Not at all: rows are this far apart (s).
     Period(f64),
     /// A number of this many seconds each; counted from the first row where it is an epoch.
     Number { column: usize, unit_s: f64, epoch: bool },

@@ -5,11 +5,11 @@ use crate::{Notice, NoticeKind};
 use headland_trace::{Channel, Trace};
 use std::f64::consts::PI;
 
-/// Speed cannot change by more than this from one row to the next [m/s].
+/// Speed cannot change by more than this from one row to the next (m/s).
 const JUMP_M_S: f64 = 3.0;
-/// The vehicle moves [m/s].
+/// The vehicle moves (m/s).
 const MOVING_M_S: f64 = 1.0;
-/// A lively channel that holds one value this long is stuck [s], if that is also this many rows.
+/// A lively channel that holds one value this long is stuck (s), if that is also this many rows.
 const STUCK_S: f64 = 5.0;
 const STUCK_ROWS: usize = 25;
 /// A spike is this many usual steps high, and this share of the channel's range.

@@ -4,14 +4,14 @@ use super::{median, short, speed};
 use crate::{Notice, NoticeKind};
 use headland_trace::Trace;
 
-/// Length of the windows in which torque is held against acceleration [s].
+/// Length of the windows in which torque is held against acceleration (s).
 const WINDOW_S: f64 = 60.0;
-/// Half the time over which speed is differentiated [s].
+/// Half the time over which speed is differentiated (s).
 const SLOPE_S: f64 = 0.3;
 /// Correlations of a window that fits and of one that does not.
 const FITS: f64 = 0.8;
 const MISFITS: f64 = 0.4;
-/// A delay that is worth telling [s], and how far it is looked for.
+/// A delay that is worth telling (s), and how far it is looked for.
 const LEAST_LAG_S: f64 = 0.3;
 const MOST_LAG_S: f64 = 3.0;
 /// Powers part where they differ by so many usual differences, by this share of the largest, in so many rows.

@@ -4,9 +4,9 @@ use super::{median, short, speed};
 use crate::{Notice, NoticeKind, RecordedRun};
 use headland_units::{Dimension, parse_unit, unit_of_name};
 
-/// The vehicle stands [m/s].
+/// The vehicle stands (m/s).
 const STANDS_M_S: f64 = 0.3;
-/// How long it has to stand for its readings to count [s].
+/// How long it has to stand for its readings to count (s).
 const LEAST_S: f64 = 1.0;
 /// The reading at standstill that is worth telling, as a share of the largest reading.
 const SHARE: f64 = 0.02;

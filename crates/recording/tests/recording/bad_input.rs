@@ -126,6 +126,22 @@ fn files_that_are_not_files() {
     assert_eq!(missing.location(), None);
 }
 
+/// Nothing is refused to the superuser, for whom there is nothing to test.
+#[cfg(unix)]
+#[test]
+fn a_log_that_may_not_be_read() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::log("time_s,v\n0,1\n1,2\n", "");
+    std::fs::set_permissions(folder.path("log.csv"), std::fs::Permissions::from_mode(0o000)).unwrap();
+    if std::fs::read(folder.path("log.csv")).is_err() {
+        assert!(
+            folder.refusal().starts_with("cannot read `log.csv`: Permission denied"),
+            "{}",
+            folder.refusal()
+        );
+    }
+}
+
 #[test]
 fn bytes_that_are_not_text() {
     assert!(Folder::log([0x50, 0x4b, 3, 4, 0, 0, 1, 2], "").refusal().contains("the file is binary"));

@@ -40,7 +40,7 @@ OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clie
 # A drag over the middle of the first plot over time has to zoom all plots of its section, and a double click to undo it.
 ZOOM = """
 (() => {
-  const frames = [...document.querySelectorAll('section')].map((s) => [...s.querySelectorAll('.plot.lines')]).find((p) => p.length > 1);
+  const frames = [...document.querySelectorAll('section')].map((s) => [...s.querySelectorAll('.plot[data-linked]')]).find((p) => p.length > 1);
   if (!frames) return null;
   const charts = frames.map((frame) => echarts.getInstanceByDom(frame));
   const ends = () => charts.map((c) => { const z = c.getOption().dataZoom[0]; return [Math.round(z.start), Math.round(z.end)]; });

@@ -114,8 +114,16 @@
     const near = 0.02 * (to - from);
     return { min: from - low <= near ? low : from, max: high - to <= near ? high : to };
   };
+  /** Which ends of an axis get a label: not those that are no round numbers. */
+  const labelled = (axis) => {
+    const { min, max } = ends(axis);
+    if (min === undefined) return { showMinLabel: null, showMaxLabel: null };
+    const [low, high] = rounded(min, max);
+    return { showMinLabel: low === min ? null : false, showMaxLabel: high === max ? null : false };
+  };
   const across = (axis, t) => ({
     type: "value", scale: true, name: titled(axis), nameLocation: "middle", nameGap: 26, ...ends(axis), ...axisStyle(t), splitLine: { show: false },
+    axisLabel: { ...axisStyle(t).axisLabel, ...labelled(axis) },
   });
   const upward = (t) => ({ type: "value", scale: true, splitNumber: 4, ...axisStyle(t) });
   /** A line at zero, where there is something on both sides of it. */
@@ -202,7 +210,7 @@
         type: dots ? "scatter" : "line", name: one.name, data: pairs(one.x, one.y), symbol: dots ? "circle" : "none", symbolSize: 4,
         color: colour(index), connectNulls: false, z: 2, emphasis: { disabled: true }, stack: spec.stacked ? "sum" : undefined,
         areaStyle: spec.stacked ? { opacity: 0.7, color: colour(index) } : undefined,
-        lineStyle: { width: spec.stacked ? 0 : 1.6, type: one.line === "dashed" ? "dashed" : again, color: colour(index) },
+        lineStyle: { width: spec.stacked ? 0 : 1.6, type: one.line === "dashed" ? "dashed" : again, color: colour(index), opacity: spec.series.length > 1 ? 0.85 : 1 },
         itemStyle: { color: colour(index) },
       });
       if (one.low) series.push(band(one.name, one.x, one.low, one.high, colour(index)));
@@ -462,7 +470,9 @@
     });
     const thick = ["#e69f00", "#cc79a7", "#56b4e9", "#999999"];
     const all = path.flat();
-    const ends = all.length ? [["start", all[0], "circle", "left"], ["end", all.at(-1), "rect", "right"]] : [];
+    const [[west, farEast], [south, farNorth]] = [range(spec.east), range(spec.north)];
+    const tall = farNorth - south > 1.5 * (farEast - west);
+    const marks = all.length ? [["start", all[0], "circle", "left"], ["end", all.at(-1), "rect", "right"]] : [];
     const series = spec.highlights.map((one, index) => ({
       type: "line", name: one.label, data: pairs(one.east, one.north), symbol: "none", silent: true, z: 1, color: thick[index % 4],
       lineStyle: { width: 13, opacity: 0.5, cap: "round", join: "round", color: thick[index % 4] }, tooltip: { show: false },
@@ -487,9 +497,9 @@
       },
       {
         type: "scatter", name: "ends", z: 4, silent: true, itemStyle: { color: t.ground, borderColor: t.ink, borderWidth: 2 },
-        data: ends.map(([name, index, symbol, side]) => ({
+        data: marks.map(([name, index, symbol, side]) => ({
           value: place(index), symbol, symbolSize: 11,
-          label: { show: true, formatter: () => name, position: side === "left" ? "top" : "bottom", color: t.ink, fontSize: 12, textBorderColor: t.ground, textBorderWidth: 3 },
+          label: { show: true, formatter: () => name, position: tall ? "right" : side === "left" ? "top" : "bottom", color: t.ink, fontSize: 12, textBorderColor: t.ground, textBorderWidth: 3 },
         })),
       },
       {
@@ -623,8 +633,8 @@
     const [{ start, end, startValue, endValue }] = chart.getOption().dataZoom;
     const whole = start <= 0 && end >= 100;
     // The ends of a part are no round numbers: not worth a label.
-    const ends = whole ? null : false;
-    chart.setOption({ xAxis: { axisLabel: { showMinLabel: ends, showMaxLabel: ends } } });
+    const labels = whole ? labelled(spec.x) : { showMinLabel: false, showMaxLabel: false };
+    chart.setOption({ xAxis: { axisLabel: labels } });
     if (spec.stacked) return undefined;
     if (whole) return chart.setOption({ yAxis: { min: null, max: null, interval: null } });
     const values = spec.series.flatMap((one) =>

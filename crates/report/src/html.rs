@@ -123,7 +123,9 @@ fn figure(
         crate::Kind::Lines(lines) => lines.time_range().and(section.time_range()),
         _ => None,
     };
+    let mut group = String::new();
     if let Some((from, to)) = linked {
+        group = format!(" data-linked=\"s{number}\"");
         drawn.spec["linked"] = json!(format!("s{number}"));
         drawn.spec["x"]["from"] = json!(from);
         drawn.spec["x"]["to"] = json!(to);
@@ -132,7 +134,7 @@ fn figure(
     let mut html = format!(
         "<figure aria-labelledby=\"t{id}\"><div class=\"head\"><h3 id=\"t{id}\">{title}</h3>\
          <div class=\"buttons\" data-for=\"{id}\"></div></div>\
-         <div class=\"plot {kind}\" id=\"p{id}\" role=\"img\" aria-label=\"{alt}\"></div>",
+         <div class=\"plot {kind}\" id=\"p{id}\"{group} role=\"img\" aria-label=\"{alt}\"></div>",
         title = escape(&plot.title),
         alt = escape(&drawn.alt),
     );

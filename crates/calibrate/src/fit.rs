@@ -282,46 +282,75 @@ fn conclude(
         }
     }
     let size: Vec<f64> = parameters.iter().map(Parameter::size).collect();
-    let scattered = cost_scale(here);
-    let pooled = pool(&sources);
-    let information = clusters.iter().fold(prior_information(parameters), |sum, one| sum + &one.information);
-    let model = crate::clusters::scaled_inverse(&information);
-    let variance = |index: usize| -> f64 {
-        let robust = pooled.as_ref().map_or(f64::INFINITY, |pooled| pooled.covariance[(index, index)]);
-        let plain = model.as_ref().map_or(f64::INFINITY, |model| model[(index, index)] * scattered);
-        // Few clusters can agree by chance; what the residuals themselves say is the floor.
-        robust.max(plain)
+    let at_bound = |index: usize| {
+        let (low, high) = parameters[index].bounds;
+        here.x[index] <= low || here.x[index] >= high
     };
+    // What a bound holds is not estimated: the others are judged as if it were known.
+    let open: Vec<usize> = (0..count).filter(|index| !at_bound(*index)).collect();
+    let judged = Judged::new(&sources, &open, cost_scale(here));
     let estimates = parameters.iter().enumerate().map(|(index, parameter)| {
-        let value = here.x[index];
-        let variance = variance(index);
-        let direction = DVector::from_fn(count, |row, _| f64::from(row == index));
-        let degrees = pooled.as_ref().map_or(f64::NAN, |pooled| pooled.degrees_of_freedom(&direction));
-        let degrees = if degrees.is_finite() { degrees.max(1.0) } else { 1.0 };
-        let (ci95, _) = if variance.is_finite() {
-            student_interval(value, variance, degrees, 0.0, 0.95)
-        } else {
-            ([f64::NEG_INFINITY, f64::INFINITY], degrees)
+        let (standard_error, ci95) = match open.iter().position(|other| *other == index) {
+            Some(place) => judged.interval(place, here.x[index]),
+            None => (f64::NAN, [f64::NEG_INFINITY, f64::INFINITY]),
         };
         Estimate {
             name: parameter.name.clone(),
             prior: parameter.value,
             prior_sd: parameter.sd,
-            value,
-            standard_error: variance.sqrt(),
+            value: here.x[index],
+            standard_error,
             ci95,
-            at_bound: value <= parameter.bounds.0 || value >= parameter.bounds.1,
+            at_bound: at_bound(index),
         }
     });
+    let information = clusters.iter().fold(prior_information(parameters), |sum, one| sum + &one.information);
     Fit {
         estimates: estimates.collect(),
-        correlation: model.as_ref().map_or_else(Vec::new, correlation),
+        correlation: crate::clusters::scaled_inverse(&information).as_ref().map_or_else(Vec::new, correlation),
         cost_before,
         cost_after: data_cost(&here.residuals),
         residuals: here.residuals.iter().map(Vec::len).sum(),
         clusters: here.residuals.len(),
         converged,
         null_space: null_space(parameters, &clusters, &size),
+    }
+}
+
+/// The uncertainty of the parameters that no bound holds.
+struct Judged {
+    pooled: Option<crate::clusters::Pooled>,
+    plain: Option<DMatrix<f64>>,
+    scattered: f64,
+    size: usize,
+}
+
+impl Judged {
+    fn new(sources: &[Cluster], open: &[usize], scattered: f64) -> Self {
+        let size = open.len();
+        let part = |cluster: &Cluster| Cluster {
+            information: DMatrix::from_fn(size, size, |row, column| cluster.information[(open[row], open[column])]),
+            score: DVector::from_fn(size, |row, _| cluster.score[open[row]]),
+        };
+        let sources: Vec<Cluster> = sources.iter().map(part).collect();
+        let information = sources.iter().fold(DMatrix::zeros(size, size), |sum, one| sum + &one.information);
+        Self { pooled: pool(&sources), plain: crate::clusters::scaled_inverse(&information), scattered, size }
+    }
+
+    /// Standard error and 95 % interval of a value.
+    fn interval(&self, place: usize, value: f64) -> (f64, [f64; 2]) {
+        let robust = self.pooled.as_ref().map_or(f64::INFINITY, |pooled| pooled.covariance[(place, place)]);
+        let plain = self.plain.as_ref().map_or(f64::INFINITY, |plain| plain[(place, place)] * self.scattered);
+        // Few clusters can agree by chance; what the residuals themselves say is the floor.
+        let variance = robust.max(plain);
+        let direction = DVector::from_fn(self.size, |row, _| f64::from(row == place));
+        let degrees = self.pooled.as_ref().map_or(f64::NAN, |pooled| pooled.degrees_of_freedom(&direction));
+        let degrees = if degrees.is_finite() { degrees.max(1.0) } else { 1.0 };
+        if variance.is_finite() {
+            (variance.sqrt(), student_interval(value, variance, degrees, 0.0, 0.95).0)
+        } else {
+            (f64::INFINITY, [f64::NEG_INFINITY, f64::INFINITY])
+        }
     }
 }
 

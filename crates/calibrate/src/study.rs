@@ -1,7 +1,7 @@
 //! A scenario held against a recording: what drives the model, what it is told, and what it is judged by.
 
 use crate::fit::{Fit, Parameter, Residuals, fit};
-use crate::statistics::mean;
+use crate::statistics::{mean, median};
 use headland_plugin::Registry;
 use headland_recording::{RecordedRun, Recording};
 use headland_scenario::{Scenario, ScenarioError};
@@ -128,7 +128,13 @@ impl<'a> Study<'a> {
             parameters.push(parameter);
             paths.push(free.path.clone());
         }
-        notes.dedup();
+        let mut unique: Vec<String> = Vec::new();
+        for note in notes {
+            if !unique.contains(&note) {
+                unique.push(note);
+            }
+        }
+        let notes = unique;
         Ok(Self { scenario, registry, runs, parameters, paths, notes, stop: || false })
     }
 
@@ -205,8 +211,11 @@ impl<'a> Study<'a> {
         Ok(found)
     }
 
-    /// Signal by signal: 1 / (scatter · √(samples per independent sample)).
-    fn weights(&self, runs: &[&Measured], values: &[f64]) -> Result<Vec<(String, f64)>, StudyError> {
+    /// Signal by signal and run by run: 1 / (scatter · √(samples per independent sample)).
+    ///
+    /// A run that fits worse than the middle one counts by its own scatter, so that a few logs with a fault (channels
+    /// that are out of step, a sensor that fails) do not decide for all.
+    fn weights(&self, runs: &[&Measured], values: &[f64]) -> Result<Weights, StudyError> {
         let outcomes: Vec<Outcome> =
             runs.par_iter().map(|run| self.replay(run, values)).collect::<Result<_, _>>()?;
         let mut names: Vec<&String> = runs.iter().flat_map(|run| &run.signals).collect();
@@ -214,21 +223,29 @@ impl<'a> Study<'a> {
         names.dedup();
         let mut weights = Vec::new();
         for name in names {
+            let scatter: Vec<f64> =
+                runs.iter().zip(&outcomes).map(|(run, outcome)| rms(run, &outcome.trace, name)).collect();
+            let known: Vec<f64> = scatter.iter().copied().filter(|rms| rms.is_finite()).collect();
+            let middle = median(&known);
+            let trust: Vec<f64> =
+                scatter.iter().map(|rms| if *rms > middle { middle / rms } else { 1.0 }).collect();
             let (mut sum, mut product, mut count) = (0.0, 0.0, 0usize);
-            for (run, outcome) in runs.iter().zip(&outcomes) {
+            for ((run, outcome), trust) in runs.iter().zip(&outcomes).zip(&trust) {
                 let residual = difference(run, &outcome.trace, name);
-                sum += residual.iter().map(|value| value * value).sum::<f64>();
-                product += residual.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>();
+                let square = trust * trust;
+                sum += square * residual.iter().map(|value| value * value).sum::<f64>();
+                product += square * residual.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>();
                 count += residual.iter().filter(|value| **value != 0.0).count();
             }
-            if count == 0 || sum == 0.0 {
-                weights.push((name.clone(), 1.0));
-                continue;
-            }
-            // An autoregressive residual of correlation r is worth (1 − r)/(1 + r) of its samples.
-            let correlation = (product / sum).clamp(0.0, 0.9999);
-            let share = (1.0 - correlation) / (1.0 + correlation);
-            weights.push((name.clone(), (share / (sum / count as f64)).sqrt()));
+            let pooled = if count == 0 || sum == 0.0 {
+                1.0
+            } else {
+                // An autoregressive residual of correlation r is worth (1 − r)/(1 + r) of its samples.
+                let correlation = (product / sum).clamp(0.0, 0.9999);
+                let share = (1.0 - correlation) / (1.0 + correlation);
+                (share / (sum / count as f64)).sqrt()
+            };
+            weights.push((name.clone(), trust.iter().map(|trust| trust * pooled).collect()));
         }
         Ok(weights)
     }
@@ -237,12 +254,13 @@ impl<'a> Study<'a> {
         &self,
         runs: &[&Measured],
         values: &[f64],
-        weights: &[(String, f64)],
+        weights: &Weights,
     ) -> Result<Residuals, StudyError> {
-        let of_run = |run: &&Measured| -> Result<Residuals, StudyError> {
+        let of_run = |(index, run): (usize, &&Measured)| -> Result<Residuals, StudyError> {
             let outcome = self.replay(run, values)?;
             let mut clusters: Residuals = Vec::new();
-            for (name, weight) in weights.iter().filter(|(name, _)| run.signals.contains(name)) {
+            for (name, weights) in weights.iter().filter(|(name, _)| run.signals.contains(name)) {
+                let weight = weights[index];
                 let residual: Vec<f64> =
                     difference(run, &outcome.trace, name).iter().map(|value| value * weight).collect();
                 let blocks = blocks(run, runs.len());
@@ -255,10 +273,13 @@ impl<'a> Study<'a> {
             }
             Ok(clusters)
         };
-        let all: Vec<Residuals> = runs.par_iter().map(of_run).collect::<Result<_, _>>()?;
+        let all: Vec<Residuals> = runs.par_iter().enumerate().map(of_run).collect::<Result<_, _>>()?;
         Ok(all.into_iter().flatten().collect())
     }
 }
+
+/// Signal, and the weight of a residual in each run.
+type Weights = Vec<(String, Vec<f64>)>;
 
 /// In how many blocks a run is cut, so that there are enough of them to see their scatter.
 fn blocks(run: &Measured, runs: usize) -> usize {

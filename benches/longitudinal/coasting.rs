@@ -4,7 +4,7 @@ use crate::{End, Forces, HEADING_RAD, MASS_KG, START_M_S, forces, step};
 use std::hint::black_box;
 
 /// Channels of the trace that the simulation keeps.
-const CHANNELS: usize = 14;
+const CHANNELS: usize = 15;
 
 pub fn run<const RECORD: bool>(steps: usize, step_s: f64) -> End {
     let mut columns: [Vec<f64>; CHANNELS] = std::array::from_fn(|_| Vec::new());
@@ -15,8 +15,21 @@ pub fn run<const RECORD: bool>(steps: usize, step_s: f64) -> End {
         if RECORD {
             let time_s = index as f64 * step_s;
             let row = [
-                time_s, y[0], y[1], y[1], k1[1], 0.0, 0.0, HEADING_RAD, now.east_m, now.north_m, 0.0, now.soil_n,
-                -now.air_n, 1.0,
+                time_s,
+                y[0],
+                y[1],
+                y[1],
+                k1[1],
+                MASS_KG,
+                0.0,
+                0.0,
+                HEADING_RAD,
+                now.east_m,
+                now.north_m,
+                0.0,
+                now.soil_n,
+                -now.air_n,
+                1.0,
             ];
             for (column, value) in columns.iter_mut().zip(row) {
                 column.push(value);

@@ -24,7 +24,7 @@ const ROTATING_KG: f64 = 60.0;
 const TARGET_M_S: f64 = START_M_S;
 
 /// Channels of the trace that the simulation keeps.
-const CHANNELS: usize = 19;
+const CHANNELS: usize = 20;
 
 struct Now {
     forces: Forces,
@@ -44,8 +44,26 @@ pub fn run<const RECORD: bool>(steps: usize, step_s: f64) -> End {
         if RECORD {
             let Forces { east_m, north_m, soil_n, air_n } = now.forces;
             let row = [
-                index as f64 * step_s, y[0], y[1], y[1], k1[1], 0.0, 0.0, HEADING_RAD, east_m, north_m, now.force_n,
-                soil_n, -air_n, 0.0, now.omega, now.torque_n_m, now.voltage_v, now.current_a, y[2],
+                index as f64 * step_s,
+                y[0],
+                y[1],
+                y[1],
+                k1[1],
+                MASS_KG + ROTATING_KG,
+                0.0,
+                0.0,
+                HEADING_RAD,
+                east_m,
+                north_m,
+                now.force_n,
+                soil_n,
+                -air_n,
+                0.0,
+                now.omega,
+                now.torque_n_m,
+                now.voltage_v,
+                now.current_a,
+                y[2],
             ];
             for (column, value) in columns.iter_mut().zip(row) {
                 column.push(value);

@@ -151,6 +151,9 @@ impl Model {
         situation.tractive_force_n = wanted_n;
         demand.force_n = self.govern(&situation, command, given, layout, states, rates);
         let slip_of = |force_n: f64| {
+            if sums.slip_per_n == 0.0 {
+                return speed_m_s;
+            }
             let slip = (sums.slip_per_n * force_n * direction).clamp(-MOST_SLIP, MOST_SLIP);
             speed_m_s / (1.0 - slip)
         };
@@ -220,8 +223,8 @@ impl Model {
         let weight_n = situation.mass_kg * self.gravity_m_s2;
         match self.vehicle.resistance {
             Resistance::Drag { area_m2 } => {
-                let contact =
-                    Contact { load_n: weight_n * place.cos_slope(), speed_m_s: rolling_speed, position_m };
+                let load_n = if place.sin_slope == 0.0 { weight_n } else { weight_n * place.cos_slope() };
+                let contact = Contact { load_n, speed_m_s: rolling_speed, position_m };
                 let soil = self.soil.as_ref().map_or(0.0, |soil| soil.resistance_n(&contact));
                 (soil, air.drag_n(area_m2, speed_m_s, place.heading_rad))
             }

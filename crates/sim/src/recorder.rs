@@ -9,9 +9,36 @@ use headland_trace::{Origin, Trace, TraceError};
 #[derive(Debug)]
 pub(crate) struct Recorder {
     time_s: Vec<f64>,
-    names: Vec<String>,
-    columns: Vec<Vec<f64>>,
-    first_effect: usize,
+    columns: Vec<Column>,
+}
+
+/// A channel that takes no memory as long as nothing is in it.
+#[derive(Debug)]
+struct Column {
+    name: String,
+    /// Whether it is left out where it is zero throughout.
+    only_if_used: bool,
+    /// NaN throughout so far, or zero throughout where that counts as unused; `None` once `values` holds everything.
+    idle: Option<f64>,
+    values: Vec<f64>,
+}
+
+impl Column {
+    /// Adds a value where `rows` are there already.
+    fn push(&mut self, value: f64, rows: usize) {
+        if let Some(idle) = self.idle {
+            if value.is_nan() && (idle.is_nan() || rows == 0) {
+                return;
+            }
+            if self.only_if_used && value == 0.0 && (idle == 0.0 || rows == 0) {
+                self.idle = Some(0.0);
+                return;
+            }
+            self.values.resize(rows, idle);
+            self.idle = None;
+        }
+        self.values.push(value);
+    }
 }
 
 const MOTION: [&str; 19] = [
@@ -55,8 +82,13 @@ impl Recorder {
                 names.push(if taken { format!("{}_effect_{unit}", effect.name) } else { name });
             }
         }
-        let columns = vec![Vec::new(); names.len()];
-        Self { time_s: Vec::new(), names, columns, first_effect }
+        let column = |(index, name): (usize, String)| Column {
+            only_if_used: ONLY_IF_USED.contains(&name.as_str()) || index >= first_effect,
+            name,
+            idle: Some(f64::NAN),
+            values: Vec::new(),
+        };
+        Self { time_s: Vec::new(), columns: names.into_iter().enumerate().map(column).collect() }
     }
 
     pub fn last_time_s(&self) -> Option<f64> {
@@ -86,28 +118,34 @@ impl Recorder {
             instant.hydraulic_power_w,
             instant.auxiliary_power_w,
         ];
+        let rows = self.time_s.len();
         self.time_s.push(machine.time_s);
-        let readings = instant.delivery.readings.channels();
-        let values = motion
-            .into_iter()
-            .chain([f64::from(u8::from(instant.situation.coasting))])
-            .chain(readings.into_iter().map(|(_, value)| value))
-            .chain(machine.states().iter().copied())
-            .chain(machine.effect_actions().iter().flat_map(|action| effect_row(instant, action)));
-        for (column, value) in self.columns.iter_mut().zip(values) {
-            column.push(value);
+        // Group by group: one loop over a chain of them costs as much as the arithmetic of a step.
+        let mut columns = self.columns.iter_mut();
+        for (value, column) in motion.into_iter().zip(columns.by_ref()) {
+            column.push(value, rows);
+        }
+        let coasting = f64::from(u8::from(instant.situation.coasting));
+        let readings = instant.delivery.readings.channels().map(|(_, value)| value);
+        if let Some(column) = columns.next() {
+            column.push(coasting, rows);
+        }
+        for (value, column) in readings.into_iter().zip(columns.by_ref()) {
+            column.push(value, rows);
+        }
+        for (value, column) in machine.states().iter().zip(columns.by_ref()) {
+            column.push(*value, rows);
+        }
+        let effects = machine.effect_actions().iter().flat_map(|action| effect_row(instant, action));
+        for (value, column) in effects.zip(columns) {
+            column.push(value, rows);
         }
     }
 
     pub fn finish(self) -> Result<Trace, TraceError> {
         let mut trace = Trace::new(self.time_s)?;
-        for (index, (name, values)) in self.names.into_iter().zip(self.columns).enumerate() {
-            let absent = values.iter().all(|value| value.is_nan());
-            let optional = ONLY_IF_USED.contains(&name.as_str()) || index >= self.first_effect;
-            let unused = optional && values.iter().all(|value| *value == 0.0);
-            if !absent && !unused {
-                trace.push(name, values, Origin::Predicted)?;
-            }
+        for column in self.columns.into_iter().filter(|column| column.idle.is_none()) {
+            trace.push(column.name, column.values, Origin::Predicted)?;
         }
         Ok(trace)
     }

@@ -240,9 +240,10 @@ impl<'a> Machine<'a> {
             self.slopes[stage] = slope;
         }
         let [k1, k2, k3, k4] = &self.slopes;
-        for (index, value) in self.y.iter_mut().enumerate() {
-            let mean = (k1[index] + 2.0 * (k2[index] + k3[index]) + k4[index]) / 6.0;
-            *value = self.start[index] + step_s * mean;
+        let slopes = k1.iter().zip(k2).zip(k3).zip(k4);
+        for ((value, start), (((k1, k2), k3), k4)) in self.y.iter_mut().zip(&self.start).zip(slopes) {
+            let mean = (k1 + 2.0 * (k2 + k3) + k4) / 6.0;
+            *value = start + step_s * mean;
         }
     }
 

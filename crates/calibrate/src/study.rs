@@ -158,11 +158,19 @@ impl<'a> Study<'a> {
     /// # Errors
     /// [`StudyError::Scenario`].
     pub fn model(&self, run: &Measured, values: &[f64]) -> Result<Model, StudyError> {
+        self.model_of(self.scenario, run, values)
+    }
+
+    /// As [`Study::model`], of a variant of the scenario.
+    ///
+    /// # Errors
+    /// [`StudyError::Scenario`].
+    pub fn model_of(&self, scenario: &Scenario, run: &Measured, values: &[f64]) -> Result<Model, StudyError> {
         let free = self.paths.iter().map(String::as_str).zip(values.iter().copied());
         let known = run.known.iter().map(|(path, value)| (path.as_str(), *value));
         let known = known.filter(|(path, _)| !self.paths.iter().any(|free| free == path));
         let changes: Vec<(&str, f64)> = free.chain(known).collect();
-        Ok(self.scenario.model_with(&changes, self.registry)?)
+        Ok(scenario.model_with(&changes, self.registry)?)
     }
 
     /// Drives the model with a run.

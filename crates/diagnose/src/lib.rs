@@ -1,0 +1,1 @@
+//! Finds the physics that a scenario left out.

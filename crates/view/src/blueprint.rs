@@ -94,7 +94,7 @@ impl Layout {
         self.nodes += 1;
         let mut id = [0x48, 0x65, 0x61, 0x64, 0x6c, 0x61, 0x4e, 0x64, 0x80, 0, 0, 0, 0, 0, 0, 0];
         id[12..].copy_from_slice(&self.nodes.to_be_bytes());
-        let mut text: String = id.iter().map(|byte| format!("{byte:02x}")).collect();
+        let mut text = format!("{:032x}", u128::from_be_bytes(id));
         for dash in [20, 16, 12, 8] {
             text.insert(dash, '-');
         }

@@ -46,7 +46,8 @@ fn arrow(body: &Body, axis: Axis, (index, count): (usize, usize), length_m: f64)
     let origin = match axis {
         Axis::Up => [0.0, 0.0, body.height_m - vector[2].min(0.0)],
         Axis::Forward | Axis::Backward => {
-            let end = if vector[0] < 0.0 { -0.5 } else { 0.5 };
+            let ahead = (axis == Axis::Forward) == (length_m >= 0.0);
+            let end = if ahead { 0.5 } else { -0.5 };
             [end * body.length_m, 0.0, body.height_m * (0.05 + 1.05 * share)]
         }
     };
@@ -119,6 +120,8 @@ mod tests {
         assert_eq!((tail[0], back), (-3.0, [-2.0, 0.0, 0.0]));
         let (turned, ahead) = arrow(&BODY, Axis::Backward, (0, 1), -2.0);
         assert_eq!((turned[0], ahead), (3.0, [2.0, 0.0, 0.0]));
+        let (still, _) = arrow(&BODY, Axis::Backward, (0, 1), 0.0);
+        assert_eq!(still[0], -3.0, "the label of no force stays where the force would be");
         let (roof, up) = arrow(&BODY, Axis::Up, (0, 1), 2.0);
         assert_eq!((roof[2], up[2]), (BODY.height_m, 2.0));
         let (above, down) = arrow(&BODY, Axis::Up, (0, 1), -2.0);

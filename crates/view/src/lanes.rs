@@ -28,7 +28,7 @@ pub(crate) struct Lane<'a> {
 pub(crate) fn lanes<'a>(scene: &Scene<'a>) -> Result<(Vec<Lane<'a>>, [f64; 3]), ViewError> {
     let (baseline_m, ground) = (scene.vehicle.wheelbase_m, scene.ground.as_ref());
     let mut lanes = Vec::with_capacity(scene.runs.len());
-    let mut south_m = 0.0;
+    let mut north_m = 0.0;
     for run in scene.runs {
         let recording = scene.measured.iter().find(|recording| recording.id == run.id);
         let mut path_of_run = path(run, baseline_m, ground)?;
@@ -40,9 +40,9 @@ pub(crate) fn lanes<'a>(scene: &Scene<'a>) -> Result<(Vec<Lane<'a>>, [f64; 3]), 
         }
         if !path_of_run.located {
             for path in [Some(&mut path_of_run), measured.as_mut()].into_iter().flatten() {
-                path.shift([0.0, -south_m, 0.0]);
+                path.shift([0.0, north_m, 0.0]);
             }
-            south_m += LANE * scene.vehicle.width_m;
+            north_m += LANE * scene.vehicle.width_m;
         }
         let (index, count) = (lanes.len(), scene.runs.len());
         let (colour, pale) = (colour::of_run(index, count), colour::of_recording(index, count));
@@ -59,7 +59,7 @@ pub(crate) fn lanes<'a>(scene: &Scene<'a>) -> Result<(Vec<Lane<'a>>, [f64; 3]), 
     Ok((lanes, shift))
 }
 
-/// From one lane to the next, in widths of the vehicle.
+/// From one lane to the next one on its left, in widths of the vehicle: the eye is on the right of the first.
 pub(crate) const LANE: f64 = 4.0;
 
 /// Lays `path`, which knows only distances, along `guide`, from where the guide was when the path began.
@@ -98,10 +98,7 @@ mod tests {
         let (lanes, _) = lanes(&scene(&runs, &[])).unwrap();
         let at = |lane: usize, pose: usize| lanes[lane].path.poses[pose].at;
         assert_eq!([at(0, 0), at(0, 1)], [[0.0; 3], [10.0, 0.0, 0.0]]);
-        assert_eq!(
-            [at(1, 0), at(1, 1)],
-            [[0.0, -LANE * BODY.width_m, 0.0], [4.0, -LANE * BODY.width_m, 0.0]]
-        );
+        assert_eq!([at(1, 0), at(1, 1)], [[0.0, LANE * BODY.width_m, 0.0], [4.0, LANE * BODY.width_m, 0.0]]);
     }
 
     /// Large coordinates would lose their centimetres in single precision.

@@ -16,7 +16,7 @@ use rerun::{
 const GHOST: u8 = 110;
 
 /// How far around the vehicle's middle there has to be something to see, in its lengths.
-const REACH: f64 = 1.55;
+const REACH: f64 = 0.79;
 
 /// Turns what looks along x to where the pose looks: q = q_z(π/2 − heading) q_y(−pitch), as x, y, z, w.
 fn turn(pose: &Pose) -> [f64; 4] {
@@ -96,7 +96,7 @@ pub(crate) fn drive(
         to.fixed(&part(&base, "name"), &label)?;
     }
     if who == Who::Modelled {
-        // The viewer's eye keeps one and a half times the radius of what it follows.
+        // The eye keeps one and a half times the extent of what it follows, 2 · 0.79 lengths here: as far as it starts.
         let reach_m = REACH * body.length_m.max(body.height_m);
         let ends = [-reach_m, reach_m].map(|ahead| single([ahead, 0.0, body.height_m / 2.0]));
         to.fixed(&entity::reach(run), &Points3D::new(ends).with_radii([1e-3]))?;

@@ -307,7 +307,9 @@ fn conclude(
     let information = clusters.iter().fold(prior_information(parameters), |sum, one| sum + &one.information);
     Fit {
         estimates: estimates.collect(),
-        correlation: crate::clusters::scaled_inverse(&information).as_ref().map_or_else(Vec::new, correlation),
+        correlation: crate::clusters::scaled_inverse(&information)
+            .as_ref()
+            .map_or_else(Vec::new, correlation),
         cost_before,
         cost_after: data_cost(&here.residuals),
         residuals: here.residuals.iter().map(Vec::len).sum(),
@@ -329,7 +331,9 @@ impl Judged {
     fn new(sources: &[Cluster], open: &[usize], scattered: f64) -> Self {
         let size = open.len();
         let part = |cluster: &Cluster| Cluster {
-            information: DMatrix::from_fn(size, size, |row, column| cluster.information[(open[row], open[column])]),
+            information: DMatrix::from_fn(size, size, |row, column| {
+                cluster.information[(open[row], open[column])]
+            }),
             score: DVector::from_fn(size, |row, _| cluster.score[open[row]]),
         };
         let sources: Vec<Cluster> = sources.iter().map(part).collect();

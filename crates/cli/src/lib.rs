@@ -10,6 +10,7 @@
 
 mod arguments;
 mod command;
+mod embedded;
 mod failure;
 mod fitted;
 mod held;
@@ -17,6 +18,7 @@ mod output;
 mod page;
 mod picture;
 mod say;
+mod staged;
 mod study_input;
 
 use arguments::{Arguments, Command};

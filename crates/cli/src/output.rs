@@ -31,12 +31,14 @@ impl Output {
     }
 
     /// Writes a text; a file appears whole or not at all.
-    pub fn text(&mut self, name: &str, text: &str) -> Result<(), Failure> {
+    pub fn text(&mut self, name: &str, text: &str) -> Result<PathBuf, Failure> {
         let path = self.file(name);
-        let draft = self.folder.join(format!(".{name}.part"));
+        let mut draft = path.clone().into_os_string();
+        draft.push(".part");
         std::fs::write(&draft, text)
             .and_then(|()| std::fs::rename(&draft, &path))
-            .map_err(|error| Failure::unwritable(&path, &error))
+            .map_err(|error| Failure::unwritable(&path, &error))?;
+        Ok(path)
     }
 
     /// Writes a JSON document.
@@ -44,7 +46,7 @@ impl Output {
         let mut json = serde_json::to_string_pretty(document)
             .map_err(|error| Failure::Machine(format!("cannot write JSON: {error}")))?;
         json.push('\n');
-        self.text(name, &json)
+        self.text(name, &json).map(drop)
     }
 
     /// Writes traces.
@@ -60,7 +62,7 @@ impl Output {
     }
 
     /// Makes a folder inside.
-    pub fn folder(&self, name: &str) -> Result<PathBuf, Failure> {
+    pub fn folder(&self, name: &Path) -> Result<PathBuf, Failure> {
         let folder = self.folder.join(name);
         std::fs::create_dir_all(&folder).map_err(|error| Failure::unwritable(&folder, &error))?;
         Ok(folder)
@@ -73,6 +75,18 @@ impl Output {
 
     /// The line that tells what was written.
     pub fn told(&self) -> String {
-        format!("{}: {}", self.folder.display(), self.written.join("  "))
+        let (inside, own): (Vec<&String>, Vec<&String>) =
+            self.written.iter().partition(|name| name.contains('/'));
+        let mut names: Vec<&str> = Vec::new();
+        for name in own {
+            names.push(name);
+        }
+        for name in inside {
+            let folder = name.split_inclusive('/').next().unwrap_or(name);
+            if !names.contains(&folder) {
+                names.push(folder);
+            }
+        }
+        format!("{}: {}", self.folder.display(), names.join("  "))
     }
 }

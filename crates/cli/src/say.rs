@@ -18,11 +18,6 @@ impl Say {
         Self { quiet, json }
     }
 
-    /// Whether the result is wanted as JSON.
-    pub fn json(self) -> bool {
-        self.json
-    }
-
     /// The result: `text` for a person, or the document.
     pub fn result(self, text: &str, document: &impl Serialize) -> Result<(), Failure> {
         let mut out = std::io::stdout().lock();

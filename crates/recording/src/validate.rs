@@ -120,6 +120,8 @@ impl Described {
             let value = amount(&known.value, "value")?;
             let sd = known.sd.as_ref().map(|sd| amount(sd, "sd")).transpose()?;
             let positive = stem(&known.name) == "mass" || stem(&known.name).ends_with("_mass");
+            // Wheels that turn may be left out of a model; a vehicle without mass may not.
+            let positive = positive && stem(&known.name) != "rotating_mass";
             if !value.is_finite() || (positive && value <= 0.0) {
                 let expected = if positive { "more than 0" } else { "a number" };
                 return Err(value_error(at("value"), &known.name, value, expected));

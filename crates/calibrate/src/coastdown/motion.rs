@@ -238,6 +238,35 @@ mod tests {
         assert!((found / exact - 1.0).abs() < 1e-9, "{found} {exact}");
     }
 
+    /// Coast-downs of the reference vehicle to standstill for each unit of v in c_w (1 + v/100), c_w 0.069, ρ 1.235,
+    /// CdA 6, g 9.81, without rotating parts: time and distance of an independent integration in steps of 1 ms.
+    #[test]
+    fn the_reference_vehicle_stops_where_it_should() {
+        let table = [
+            (30.0, 100.0 / 3.6, 10.69, 42.42),
+            (15.0, 100.0 / 3.6, 5.72, 11.63),
+            (30.0, 44.704, 11.20, 45.13),
+            (30.0, 100.0, 11.72, 47.96),
+            (30.0, 1e12, 12.19, 50.56),
+        ];
+        for (initial_km_h, scale_m_s, until_s, distance_m) in table {
+            let mut coast = coast();
+            (coast.mass_kg, coast.effective_mass_kg) = (13_019.3, 13_019.3);
+            coast.half_density_drag_area_kg_m = Some(0.5 * 1.235 * 6.0);
+            coast.time_s = (0..=2000).map(|at| until_s * f64::from(at) / 2000.0).collect();
+            coast.ambient = vec![Ambient::default(); 2001];
+            let parameters = [0.069 * 9.81 / 9.806_65];
+            let terms = [Term::Rolling { scale_m_s }];
+            let motion = Motion { terms: &terms, parameters: &parameters, air: Air::Known };
+            let (speeds, _) = motion.roll_out(&coast, initial_km_h / 3.6);
+            // The table is rounded to 5 ms and 5 mm; at 0.68 m/s² 0.1 % of the time is 8 mm/s.
+            assert!(speeds[2000].abs() < 0.001 * until_s * 0.68, "{} m/s after {until_s} s", speeds[2000]);
+            let pairs = speeds.as_slice().windows(2);
+            let distance: f64 = pairs.map(|pair| 0.5 * (pair[0] + pair[1]) * until_s / 2000.0).sum();
+            assert!((distance / distance_m - 1.0).abs() < 1e-3, "{distance} m, expected {distance_m}");
+        }
+    }
+
     /// A known side wind w adds to the drag: ½ρCdA √(v² + w²) v; head wind of the same strength (v + w)².
     #[test]
     fn wind_is_a_vector() {

@@ -36,16 +36,20 @@ impl Sight {
 
     /// Terms of a road load that have an effect of their own, however weak.
     pub fn separable(&self) -> Vec<Term> {
-        self.terms
-            .iter()
-            .enumerate()
-            .filter(|(index, term)| match term {
-                Term::RotatingMass | Term::SpeedScale => false,
-                Term::Headwind { .. } => self.found(*index).is_none(),
-                _ => self.found(*index).is_none_or(|blind| !blind.exact),
-            })
-            .map(|(_, term)| *term)
-            .collect()
+        let kept = self.terms.iter().enumerate().filter(|(index, term)| match term {
+            Term::RotatingMass | Term::SpeedScale => false,
+            Term::Headwind { .. } => self.found(*index).is_none(),
+            _ => self.found(*index).is_none_or(|blind| !blind.exact),
+        });
+        let mut terms: Vec<Term> = kept.map(|(_, term)| *term).collect();
+        // Asked in another order than told: air drag is sure to be there, a viscous part is not.
+        terms.sort_by_key(|term| match term {
+            Term::Constant => 0,
+            Term::Linear => 1,
+            Term::Quadratic => 2,
+            _ => 3,
+        });
+        terms
     }
 
     /// The same without wind: it is only let in where it stands out.
@@ -178,7 +182,7 @@ fn sentence(study: &Study, sight: &Sight, blind: &Blind) -> String {
         Some((last, others)) => format!("{} and {last}", others.join(", ")),
     };
     let own = amount(&name, size, unit);
-    let known = format!("it is known to ±{} only (one standard deviation)", number(blind.deviation, unit));
+    let known = format!("it is known to ±{} only (one standard deviation)", number(blind.deviation, unit).trim_start_matches('+'));
     match (term, blind.exact, looks.is_empty()) {
         (Term::Grade { .. }, true, false) => format!(
             "The {name} and the level of resistance cannot be separated, as it was driven in one direction only: {own} \

@@ -172,9 +172,9 @@ fn longest(coasting: &[f64], brake: Option<&[f64]>, time: &[f64]) -> (usize, usi
 fn deceleration(time: &[f64], speed: &[f64]) -> (usize, usize) {
     let smooth = smoothed(time, speed);
     let (mut best, mut best_drop) = ((0, 0), 0.0);
-    let Some(mut top) = (0..smooth.len()).find(|at| smooth[*at].is_finite()) else { return best };
-    let mut bottom = top;
-    for at in top..smooth.len() {
+    let Some(first) = smooth.iter().position(|value| value.is_finite()) else { return best };
+    let (mut top, mut bottom) = (first, first);
+    for at in first..smooth.len() {
         let value = smooth[at];
         if value.is_nan() {
             continue;

@@ -257,6 +257,9 @@ fn check_constants(run: &CoastRun) -> Result<(), CoastDownError> {
     Ok(())
 }
 
+/// Moves a constant by its standard deviation, and says how far.
+type Shift<'a> = dyn Fn(&CoastRun, &mut Coast) -> f64 + 'a;
+
 /// Constants are taken as shared: an error of one is the same in all runs, each by its own standard deviation.
 fn shifted(runs: &[CoastRun], coasts: &[Coast]) -> Vec<Vec<Coast>> {
     let mass = |run: &CoastRun, coast: &mut Coast| {
@@ -279,7 +282,7 @@ fn shifted(runs: &[CoastRun], coasts: &[Coast]) -> Vec<Vec<Coast>> {
     };
     let area = |run: &CoastRun, coast: &mut Coast| scale(run.drag_area_m2, coast);
     let density = |run: &CoastRun, coast: &mut Coast| scale(run.air_density_kg_m3, coast);
-    let shifts: [&dyn Fn(&CoastRun, &mut Coast) -> f64; 4] = [&mass, &rotating, &area, &density];
+    let shifts: [&Shift; 4] = [&mass, &rotating, &area, &density];
     shifts
         .into_iter()
         .filter_map(|shift| {

@@ -82,6 +82,8 @@ fn noise_free_runs_give_back_what_made_them() {
     assert!((value(fit, "f1") / (0.069 * weight * 0.036) - 1.0).abs() < 1e-3, "{fit:?}");
     assert!((value(fit, "f2") / (0.5 * 1.238 * 6.0) - 1.0).abs() < 0.01, "{fit:?}");
     assert!(found.runs.iter().all(|run| run.offset.abs() < 1e-6 && run.rms_m_s < 1e-6), "{:?}", found.runs);
+    let order: Vec<&str> = fit.estimates[..3].iter().map(|estimate| estimate.name.as_str()).collect();
+    assert_eq!(order, ["f0", "f1", "f2"]);
     let readings: Vec<f64> = law.units.iter().map(|reading| reading.rms_m_s).collect();
     assert!(readings[0] < 1e-3 * readings[1] && readings[1] < readings[2], "{readings:?}");
 }

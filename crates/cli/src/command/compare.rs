@@ -13,6 +13,7 @@ use headland_recording::Recording;
 use headland_scenario::Scenario;
 use serde::Serialize;
 use std::fmt::Write;
+use std::path::Path;
 
 /// `comparison.json`.
 #[derive(Debug, Serialize)]
@@ -26,6 +27,13 @@ pub struct Comparison {
     requirements: Vec<Required>,
     notes: Vec<String>,
     notices: Vec<ToldNotice>,
+}
+
+impl Comparison {
+    /// All runs at a glance.
+    pub fn summary(&self) -> &Summary {
+        &self.summary
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -56,7 +64,14 @@ pub fn compare(registry: &Registry, options: &CompareOptions, say: &Say) -> Resu
     let summary = held::summary(&pairs);
     let checks = wanted.iter().map(|wanted| summary.meets(wanted)).collect::<Result<Vec<_>, _>>()?;
     let notes = notes(&study.notes, &pairs);
-    let document = document(&options.held, &recording, &pairs, summary, &checks, notes);
+    let document = document(
+        (&options.held.scenario, &options.held.recording),
+        &recording,
+        &pairs,
+        summary,
+        &checks,
+        notes,
+    );
     let traces = held::traces(&pairs)?;
     output.traces("trace.parquet", &traces)?;
     output.json("comparison.json", &document)?;
@@ -89,8 +104,9 @@ pub fn notes(of_study: &[String], pairs: &[Pair]) -> Vec<String> {
     notes
 }
 
-fn document(
-    options: &crate::arguments::HeldOptions,
+/// Puts the document together; `files` are scenario and recording.
+pub fn document(
+    files: (&Path, &Path),
     recording: &Recording,
     pairs: &[Pair],
     summary: Summary,
@@ -106,8 +122,8 @@ fn document(
     let required = |check: &Check| Required { text: check.requirement.to_string(), check: check.clone() };
     Comparison {
         summary,
-        scenario: options.scenario.display().to_string(),
-        recording: options.recording.display().to_string(),
+        scenario: files.0.display().to_string(),
+        recording: files.1.display().to_string(),
         driven_by: pairs.iter().map(driven_by).collect(),
         requirements: checks.iter().map(required).collect(),
         notes,

@@ -145,9 +145,13 @@ fn totals(summary: &Summary) -> Table {
 }
 
 fn runs(content: &Content) -> Table {
-    let names: Vec<&str> = content.summary.channels.iter().map(|channel| channel.channel.as_str()).collect();
+    let judged = |channel: &&headland_compare::ChannelSummary| {
+        content.pairs.iter().any(|pair| pair.signals.contains(&channel.channel))
+    };
+    let channels: Vec<_> = content.summary.channels.iter().filter(judged).collect();
+    let names: Vec<&str> = channels.iter().map(|channel| channel.channel.as_str()).collect();
     let mut columns = vec![Axis::new("run", ""), Axis::new("duration", "s")];
-    columns.extend(content.summary.channels.iter().map(|channel| {
+    columns.extend(channels.iter().map(|channel| {
         Axis::new(
             format!("RMSE of {}", spoken(&channel.channel)),
             if channel.unit == "1" { "" } else { &channel.unit },

@@ -54,8 +54,8 @@ pub fn map(trace: &Trace) -> Option<Plot> {
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
         (high > low).then_some(high - low).or(Some(0.0))
     };
-    let moved = reach("east_m")?.max(reach("north_m")?);
-    if moved < 1.0 {
+    // A straight line tells nothing that its plot along the path does not.
+    if reach("east_m")?.min(reach("north_m")?) < 1.0 {
         return None;
     }
     build::path_map(trace, Some("speed_m_s"), &[]).ok()

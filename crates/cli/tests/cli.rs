@@ -1,0 +1,12 @@
+//! The program as its users meet it: commands in, files and exit status out.
+
+#[path = "cli/bad_input.rs"]
+mod bad_input;
+#[path = "cli/commands.rs"]
+mod commands;
+#[path = "cli/help.rs"]
+mod help;
+#[path = "cli/large.rs"]
+mod large;
+#[path = "cli/scenarios.rs"]
+mod scenarios;

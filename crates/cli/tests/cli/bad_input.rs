@@ -1,0 +1,182 @@
+//! Bad input gets exit status 2 and a message that one would thank for: what, where, and what was meant.
+
+use super::help::{Place, RECORDING, SCENARIO, log, refused};
+
+/// Runs the scenario with a piece of it changed.
+fn scenario(from: &str, to: &str) -> String {
+    assert!(SCENARIO.contains(from));
+    let place = Place::new();
+    place.write("scenario.ron", &SCENARIO.replace(from, to));
+    refused(2, &["run", &place.path("scenario.ron"), "--out", &place.path("out")])
+}
+
+/// Compares with a recording of which a piece is changed.
+fn recording(description: &str, log: &str) -> String {
+    let place = Place::new();
+    place.write("recording.ron", description);
+    place.write("r1.csv", log);
+    let output = place.compare();
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{told}");
+    told
+}
+
+fn holds(told: &str, pieces: &[&str]) {
+    for piece in pieces {
+        assert!(told.contains(piece), "`{piece}` is missing in\n{told}");
+    }
+}
+
+#[test]
+fn a_misspelt_field_is_shown_with_the_one_that_was_meant() {
+    let told = scenario("mass_kg: 1000", "mas_kg: 1000");
+    holds(&told, &["scenario.ron:5:9", "mas_kg", "did you mean `mass_kg`", "^^^"]);
+}
+
+#[test]
+fn a_misspelt_model_is_shown_with_the_one_that_was_meant() {
+    let told = scenario("Constant(", "Konstant(");
+    holds(&told, &["scenario.ron:12:15", "Konstant", "did you mean `Constant`", "headland plugins soil"]);
+}
+
+#[test]
+fn a_unit_that_does_not_fit_is_refused_where_it_stands() {
+    holds(&scenario("\"36 km/h\"", "\"36 kg\""), &["scenario.ron:15:38", "kg", "m/s"]);
+    let told = recording(&RECORDING.replace("\"km/h\"", "\"kg\""), &log());
+    holds(&told, &["recording.ron:4:", "`kg`", "speed_m_s"]);
+}
+
+#[test]
+fn a_mass_that_is_negative_or_no_number_is_refused() {
+    holds(&scenario("mass_kg: 1000", "mass_kg: -1000"), &["scenario.ron:5:18", "-1000", "more than 0"]);
+    holds(&scenario("mass_kg: 1000", "mass_kg: NaN"), &["scenario.ron:5:18", "NaN"]);
+    holds(&scenario("mass_kg: 1000", "mass_kg: heavy"), &["scenario.ron:5:", "heavy"]);
+}
+
+#[test]
+fn a_missing_column_is_answered_with_those_that_are_there() {
+    let told = recording(&RECORDING.replace("\"v\"", "\"speed\""), &log());
+    holds(&told, &["recording.ron:4:", "speed", "r1.csv"]);
+}
+
+#[test]
+fn a_misspelt_channel_is_shown_with_the_one_that_was_meant() {
+    let told = recording(&RECORDING.replace("speed_m_s", "spede_m_s"), &log());
+    holds(&told, &["recording.ron:4:", "did you mean `speed_m_s`"]);
+}
+
+#[test]
+fn time_that_runs_backwards_is_refused_with_its_row() {
+    let told = recording(RECORDING, &log().replace("\n1.0,", "\n0.5,"));
+    holds(&told, &["r1.csv:12", "backwards", "0.5"]);
+}
+
+#[test]
+fn text_in_the_place_of_a_number_is_refused_with_its_cell() {
+    let told = recording(RECORDING, &log().replacen("\n0.5,35.460", "\n0.5,fast", 1));
+    holds(&told, &["r1.csv:7", "fast"]);
+}
+
+#[test]
+fn rows_of_uneven_length_are_refused() {
+    let told = recording(RECORDING, &log().replacen("\n0.5,35.460,1", "\n0.5,35.460", 1));
+    holds(&told, &["r1.csv:7", "expected 3"]);
+}
+
+#[test]
+fn empty_files_are_refused() {
+    holds(&recording(RECORDING, ""), &["r1.csv", "expected a header"]);
+    holds(&recording(RECORDING, "time_s,v,coasting\n"), &["r1.csv", "expected"]);
+    let place = Place::new();
+    place.write("scenario.ron", "");
+    let told = refused(2, &["run", &place.path("scenario.ron"), "--out", &place.path("out")]);
+    holds(&told, &["scenario.ron", "empty"]);
+}
+
+/// Values that are missing are no mistake of the file: they are counted and told.
+#[test]
+fn missing_values_of_a_log_are_told_and_left_out() {
+    let place = Place::new();
+    place.write("r1.csv", &log().replacen("\n0.5,35.460,1", "\n0.5,NaN,1", 1));
+    assert!(place.compare().status.success());
+    let document = place.json("out/comparison.json");
+    let told = document["notices"].to_string();
+    assert!(told.contains("missing"), "{told}");
+}
+
+#[test]
+fn a_folder_in_the_place_of_a_file_is_named() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("folder.ron")).unwrap();
+    let folder = place.path("folder.ron");
+    holds(&refused(2, &["run", &folder]), &["folder.ron", "is a folder"]);
+    let told = refused(2, &["compare", &place.path("scenario.ron"), "--recording", &folder]);
+    holds(&told, &["folder.ron", "folder"]);
+    std::fs::remove_file(place.path("r1.csv")).unwrap();
+    std::fs::create_dir(place.path("r1.csv")).unwrap();
+    let told = String::from_utf8_lossy(&place.compare().stderr).into_owned();
+    holds(&told, &["r1.csv", "is a folder", "recording.ron:3:"]);
+}
+
+#[test]
+fn a_file_that_is_not_there_is_named() {
+    let place = Place::new();
+    holds(&refused(2, &["run", &place.path("none.ron")]), &["none.ron", "cannot read"]);
+    std::fs::remove_file(place.path("r1.csv")).unwrap();
+    let told = String::from_utf8_lossy(&place.compare().stderr).into_owned();
+    holds(&told, &["r1.csv", "recording.ron:3:"]);
+}
+
+#[test]
+fn a_path_that_cannot_be_written_is_named() {
+    let place = Place::new();
+    place.write("taken", "a file, not a folder");
+    let out = place.path("taken") + "/out";
+    let told = refused(2, &["run", &place.path("scenario.ron"), "--out", &out]);
+    holds(&told, &["cannot write", "taken/out"]);
+}
+
+#[test]
+fn what_a_requirement_got_wrong_is_said() {
+    let place = Place::new();
+    let compare = |requirement: &str| {
+        let arguments = [
+            "--recording",
+            &place.path("recording.ron"),
+            "--out",
+            &place.path("out"),
+            "--require",
+            requirement,
+        ];
+        refused(2, &[&["compare", &place.path("scenario.ron")], &arguments[..]].concat())
+    };
+    holds(&compare("speed_m_s rmsee < 0.2"), &["rmsee", "rmse"]);
+    holds(&compare("speed_m_s rmse < 0.2 kg"), &["kg"]);
+    holds(&compare("sped_m_s rmse < 0.2"), &["speed_m_s"]);
+}
+
+#[test]
+fn a_mass_that_nobody_knows_is_asked_for() {
+    let place = Place::new();
+    place.write("recording.ron", &RECORDING.replace("known: [(name: \"mass_kg\", value: 1000)],", ""));
+    let told = refused(2, &["coastdown", &place.path("recording.ron"), "--out", &place.path("out")]);
+    holds(&told, &["mass", "known: [(name: \"mass_kg\"", "recording.ron"]);
+}
+
+#[test]
+fn rerun_that_was_not_built_in_is_said_before_anything_is_simulated() {
+    if cfg!(feature = "rerun") {
+        return;
+    }
+    let place = Place::new();
+    let told = refused(2, &["run", &place.path("scenario.ron"), "--rerun", "--out", &place.path("out")]);
+    holds(&told, &["--features rerun"]);
+    assert!(!std::path::Path::new(&place.path("out")).exists());
+}
+
+#[test]
+fn words_that_the_command_line_does_not_know_are_refused() {
+    holds(&refused(2, &["runn"]), &["run"]);
+    holds(&refused(2, &["demo", "coastdwn"]), &["did you mean `coastdown`"]);
+    holds(&refused(2, &["plugins", "sole"]), &["did you mean `soil`"]);
+}

@@ -182,7 +182,10 @@ fn sentence(study: &Study, sight: &Sight, blind: &Blind) -> String {
         Some((last, others)) => format!("{} and {last}", others.join(", ")),
     };
     let own = amount(&name, size, unit);
-    let known = format!("it is known to ±{} only (one standard deviation)", number(blind.deviation, unit).trim_start_matches('+'));
+    let known = format!(
+        "it is known to ±{} only (one standard deviation)",
+        number(blind.deviation, unit).trim_start_matches('+')
+    );
     match (term, blind.exact, looks.is_empty()) {
         (Term::Grade { .. }, true, false) => format!(
             "The {name} and the level of resistance cannot be separated, as it was driven in one direction only: {own} \

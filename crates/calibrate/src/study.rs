@@ -14,7 +14,7 @@ use rayon::prelude::*;
 pub enum StudyError {
     /// The scenario.
     #[error("{}", .0.told())]
-    Scenario(#[from] ScenarioError),
+    Scenario(Box<ScenarioError>),
     /// A run cannot drive the model.
     #[error("run `{run}`: {error}")]
     Replay {
@@ -50,6 +50,12 @@ pub enum StudyError {
     /// A trace does not come together: a bug.
     #[error(transparent)]
     Trace(#[from] TraceError),
+}
+
+impl From<ScenarioError> for StudyError {
+    fn from(error: ScenarioError) -> Self {
+        Self::Scenario(Box::new(error))
+    }
 }
 
 /// One recorded run, ready to drive the model.
@@ -153,6 +159,16 @@ impl<'a> Study<'a> {
         self.parameters.iter().map(|parameter| parameter.value).collect()
     }
 
+    /// The values that the scenario stands for: its own number where a prior is stated apart from it, as a calibration
+    /// leaves it, else the prior.
+    pub fn start(&self) -> Vec<f64> {
+        let value = |(free, parameter): (&headland_scenario::Free, &Parameter)| {
+            let stands = self.scenario.document().number(&free.path);
+            stands.filter(|stands| *stands != free.value).unwrap_or(parameter.value)
+        };
+        self.scenario.free.iter().zip(&self.parameters).map(value).collect()
+    }
+
     /// The model of a run, with these values of the free parameters.
     ///
     /// # Errors
@@ -203,11 +219,11 @@ impl<'a> Study<'a> {
     /// # Errors
     /// [`StudyError`].
     pub fn calibrate(&self) -> Result<Fit, StudyError> {
+        /// Rounds in which weights and parameters settle.
+        const ROUNDS: usize = 3;
         if self.parameters.is_empty() {
             return Err(StudyError::NothingFree { path: self.scenario.document().path().to_owned() });
         }
-        /// Rounds in which weights and parameters settle.
-        const ROUNDS: usize = 3;
         let runs: Vec<&Measured> = self.runs.iter().filter(|run| !run.held_out).collect();
         let runs = if runs.is_empty() { self.runs.iter().collect() } else { runs };
         let mut weights = self.weights(&runs, &self.priors())?;
@@ -342,7 +358,7 @@ fn measured(
         match scenario.document().resolve(&one.name) {
             Ok(path) => known.push((path, one.value)),
             Err(_) => {
-                notes.push(format!("the recording knows `{}`, of which the scenario has nothing", one.name))
+                notes.push(format!("the recording knows `{}`, of which the scenario has nothing", one.name));
             }
         }
     }
@@ -410,7 +426,7 @@ fn inputs_of(trace: &Trace, drive: Drive) -> Vec<Inputs> {
     Inputs::ALL
         .into_iter()
         .filter(|input| !(drive == Drive::Coast && *input == Inputs::Coasting))
-        .filter(|input| input.channels().iter().all(|name| whole(name)))
+        .filter(|input| input.channels().iter().all(&whole))
         .collect()
 }
 

@@ -61,7 +61,8 @@ pub struct Estimate {
 #[derive(Debug, Serialize)]
 pub struct Signal {
     /// Channel.
-    pub signal: String,
+    #[serde(rename = "signal")]
+    pub channel: String,
     /// Unit.
     pub unit: String,
     /// Over the fitted runs.
@@ -100,7 +101,8 @@ pub struct RunFit {
 #[derive(Debug, Serialize)]
 pub struct SignalFit {
     /// Channel.
-    pub signal: String,
+    #[serde(rename = "signal")]
+    pub channel: String,
     /// Root mean square before.
     pub rmse_before: f64,
     /// Root mean square after.
@@ -168,7 +170,7 @@ fn signals(before: &[Pair], after: &[Pair]) -> Vec<Signal> {
         Part { runs: runs.into_iter().map(|(run, ..)| run).collect(), rmse_before, rmse_after }
     };
     let signal = |name: &&String| Signal {
-        signal: (*name).clone(),
+        channel: (*name).clone(),
         unit: unit(name),
         fitted: part(name, false),
         held_out: part(name, true),
@@ -185,7 +187,7 @@ pub fn errors(pair: &Pair, name: &str) -> Option<(f64, f64, usize)> {
 fn run_fit((before, after): (&Pair, &Pair)) -> RunFit {
     let signal = |name: &String| {
         let ((rmse_before, ..), (rmse_after, bias_after, _)) = (errors(before, name)?, errors(after, name)?);
-        Some(SignalFit { signal: name.clone(), rmse_before, rmse_after, bias_after })
+        Some(SignalFit { channel: name.clone(), rmse_before, rmse_after, bias_after })
     };
     RunFit {
         run: before.comparison.run.clone(),

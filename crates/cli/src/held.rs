@@ -33,7 +33,7 @@ pub struct Pair {
 }
 
 /// Reads a recording, telling about it.
-pub fn read_recording(path: &Path, say: &Say) -> Result<Recording, Failure> {
+pub fn read_recording(path: &Path, say: Say) -> Result<Recording, Failure> {
     say.progress(&format!("reading {}", path.display()));
     let recording = headland_recording::load(path)?;
     let samples: usize = recording.runs.iter().map(|run| run.trace.len()).sum();
@@ -64,7 +64,7 @@ fn at(failure: Failure, path: &Path) -> Failure {
 }
 
 /// Drives the model with every run and compares, in parallel; the order is that of the recording.
-pub fn drive(study: &Study, values: &[f64], what: &str, say: &Say) -> Result<Vec<Pair>, Failure> {
+pub fn drive(study: &Study, values: &[f64], what: &str, say: Say) -> Result<Vec<Pair>, Failure> {
     let bar = say.bar(what, study.runs.len());
     let pairs = study
         .runs

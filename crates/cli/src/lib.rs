@@ -43,16 +43,16 @@ pub fn run(registry: &Registry, arguments: impl IntoIterator<Item = OsString>) -
         }
     };
     let say = Say::new(arguments.common.quiet, arguments.common.json);
-    match begin(registry, &arguments, &say) {
+    match begin(registry, &arguments, say) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            say.failure(&failure);
+            Say::failure(&failure);
             ExitCode::from(failure.status())
         }
     }
 }
 
-fn begin(registry: &Registry, arguments: &Arguments, say: &Say) -> Result<(), Failure> {
+fn begin(registry: &Registry, arguments: &Arguments, say: Say) -> Result<(), Failure> {
     failure::listen_for_interruption()?;
     if let Some(threads) = arguments.common.threads {
         rayon::ThreadPoolBuilder::new()

@@ -61,7 +61,7 @@ impl Say {
     }
 
     /// Why the command did not end well.
-    pub fn failure(self, failure: &Failure) {
+    pub fn failure(failure: &Failure) {
         let word = if matches!(failure, Failure::Requirement(_)) { "not met" } else { "error" };
         let _ = writeln!(std::io::stderr(), "{word}: {failure}");
     }

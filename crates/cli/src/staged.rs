@@ -79,7 +79,7 @@ fn log(trace: &Trace, (wind_m_s, wind_deg): (f64, f64), draws: &mut Draws) -> St
         // A receiver does not know the sign of a speed.
         let speed_km_h = (3.6 * (at("speed_m_s", time_s) + NOISE_M_S * draws.normal())).abs();
         let heading_deg = at("heading_rad", time_s).to_degrees();
-        let coasting = if at("coasting", time_s) >= 0.5 { 1 } else { 0 };
+        let coasting = u8::from(at("coasting", time_s) >= 0.5);
         let _ = writeln!(
             text,
             "{time_s:.1};{speed_km_h:.2};{heading_deg:.1};{wind_m_s:.1};{wind_deg:.0};{coasting}"

@@ -19,14 +19,14 @@ use std::fmt::Write;
 const HELD_OUT_OF: usize = 4;
 
 /// Runs the command.
-pub fn calibrate(registry: &Registry, options: &CalibrateOptions, say: &Say) -> Result<(), Failure> {
+pub fn calibrate(registry: &Registry, options: &CalibrateOptions, say: Say) -> Result<(), Failure> {
     let scenario = Scenario::read(&options.held.scenario, registry)?;
     let recording = held::read_recording(&options.held.recording, say)?;
     let mut study = held::study(&scenario, &recording, registry)?;
     let mut output = Output::new(options.held.out.as_deref(), &options.held.scenario)?;
     hold_out(&mut study);
     let fit = fit(&study, say)?;
-    let before = held::drive(&study, &study.priors(), "replaying before", say)?;
+    let before = held::drive(&study, &study.start(), "replaying before", say)?;
     let after = held::drive(&study, &fit.values(), "replaying after", say)?;
     let mut document = Calibration::new(&options.held, &study, &fit, &before, &after);
     document.notes = notes(&study.notes, &after);
@@ -40,7 +40,7 @@ pub fn calibrate(registry: &Registry, options: &CalibrateOptions, say: &Say) -> 
 }
 
 /// Fits, telling so.
-pub fn fit(study: &Study, say: &Say) -> Result<Fit, Failure> {
+pub fn fit(study: &Study, say: Say) -> Result<Fit, Failure> {
     let runs = study.runs.iter().filter(|run| !run.held_out).count();
     say.progress(&format!("fitting {} parameters to {runs} runs", study.parameters.len()));
     Ok(study.calibrate()?)
@@ -82,7 +82,7 @@ fn told(scenario: &Scenario, recording: &Recording, document: &Calibration, outp
                 let _ = writeln!(
                     text,
                     "  {:<18} RMSE {} → {} {}   {} {what} runs",
-                    signal.signal,
+                    signal.channel,
                     page::short(part.rmse_before),
                     page::short(part.rmse_after),
                     signal.unit,

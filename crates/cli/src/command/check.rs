@@ -21,7 +21,7 @@ struct Checked {
 }
 
 /// Runs the command.
-pub fn check(registry: &Registry, options: &CheckOptions, say: &Say) -> Result<(), Failure> {
+pub fn check(registry: &Registry, options: &CheckOptions, say: Say) -> Result<(), Failure> {
     let checked: Vec<Checked> = options.files.iter().map(|path| check_one(registry, path)).collect();
     let mut text = String::new();
     for one in &checked {

@@ -46,7 +46,7 @@ impl Analysis {
 }
 
 /// Runs the command.
-pub fn coastdown(options: &CoastdownOptions, seed: u64, say: &Say) -> Result<(), Failure> {
+pub fn coastdown(options: &CoastdownOptions, seed: u64, say: Say) -> Result<(), Failure> {
     let given = options.known.iter().map(|text| given(text)).collect::<Result<Vec<_>, _>>()?;
     let unit = options.speed_unit.as_deref().map(speed_unit).transpose()?;
     let recording = held::read_recording(&options.recording, say)?;
@@ -58,7 +58,7 @@ pub fn coastdown(options: &CoastdownOptions, seed: u64, say: &Say) -> Result<(),
     let mut output = Output::new(options.out.as_deref(), &options.recording)?;
     let analysis = analyse(&recording, input, settings, say)?;
     output.json("coastdown.json", &analysis.document)?;
-    output.page("report.html", &page::coastdown::page(&recording, &analysis)?)?;
+    output.page("report.html", &page::coastdown::page(&recording, &analysis))?;
     let mut text = told(&recording, &analysis);
     let _ = writeln!(text, "  written  {}", output.told());
     say.result(&text, &analysis.document)
@@ -69,7 +69,7 @@ pub fn analyse(
     recording: &Recording,
     input: StudyInput,
     mut settings: Settings,
-    say: &Say,
+    say: Say,
 ) -> Result<Analysis, Failure> {
     let StudyInput { runs, mut assumed } = input;
     let stated = settings.speed_law_unit.is_some();

@@ -52,7 +52,7 @@ struct Required {
 }
 
 /// Runs the command.
-pub fn compare(registry: &Registry, options: &CompareOptions, say: &Say) -> Result<(), Failure> {
+pub fn compare(registry: &Registry, options: &CompareOptions, say: Say) -> Result<(), Failure> {
     let wanted: Vec<Requirement> =
         options.require.iter().map(|text| text.parse()).collect::<Result<_, _>>()?;
     picture::possible(options.rerun || options.view)?;
@@ -60,7 +60,7 @@ pub fn compare(registry: &Registry, options: &CompareOptions, say: &Say) -> Resu
     let recording = held::read_recording(&options.held.recording, say)?;
     let study = held::study(&scenario, &recording, registry)?;
     let mut output = Output::new(options.held.out.as_deref(), &options.held.scenario)?;
-    let pairs = held::drive(&study, &study.priors(), "replaying", say)?;
+    let pairs = held::drive(&study, &study.start(), "replaying", say)?;
     let summary = held::summary(&pairs);
     let checks = wanted.iter().map(|wanted| summary.meets(wanted)).collect::<Result<Vec<_>, _>>()?;
     let notes = notes(&study.notes, &pairs);

@@ -41,10 +41,10 @@ struct Told<'a> {
 }
 
 /// Runs the command.
-pub fn demo(registry: &Registry, options: &DemoOptions, seed: u64, say: &Say) -> Result<(), Failure> {
+pub fn demo(registry: &Registry, options: &DemoOptions, seed: u64, say: Say) -> Result<(), Failure> {
     if options.list {
         let examples = EXAMPLES.map(|(name, about)| Example { name, about });
-        let text: String = EXAMPLES.iter().map(|(name, about)| format!("{name:<12} {about}\n")).collect();
+        let text = EXAMPLES.map(|(name, about)| format!("{name:<12} {about}")).join("\n");
         return say.result(&text, &examples);
     }
     let names = EXAMPLES.map(|(name, _)| name);
@@ -60,7 +60,7 @@ pub fn demo(registry: &Registry, options: &DemoOptions, seed: u64, say: &Say) ->
     coast_down(registry, options, seed, say)
 }
 
-fn coast_down(registry: &Registry, options: &DemoOptions, seed: u64, say: &Say) -> Result<(), Failure> {
+fn coast_down(registry: &Registry, options: &DemoOptions, seed: u64, say: Say) -> Result<(), Failure> {
     let mut output = Output::new(Some(&options.out), &options.out)?;
     let path = embedded::write(&embedded::COAST_DOWN_STUDY, &mut output)?;
     let scenario = Scenario::read(&path, registry)?;
@@ -73,7 +73,7 @@ fn coast_down(registry: &Registry, options: &DemoOptions, seed: u64, say: &Say) 
     let analysis = analyse(&recording, seed, say)?;
     output.json("coastdown.json", &analysis.document)?;
     let study = held::study(&scenario, &recording, registry)?;
-    let pairs = held::drive(&study, &study.priors(), "comparing", say)?;
+    let pairs = held::drive(&study, &study.start(), "comparing", say)?;
     let notes = compare::notes(&study.notes, &pairs);
     let comparison =
         compare::document((&path, &described), &recording, &pairs, held::summary(&pairs), &[], notes);
@@ -84,7 +84,7 @@ fn coast_down(registry: &Registry, options: &DemoOptions, seed: u64, say: &Say) 
     say.result(&text(&scenario, &analysis, &comparison, truth, &output), &told)
 }
 
-fn analyse(recording: &Recording, seed: u64, say: &Say) -> Result<Analysis, Failure> {
+fn analyse(recording: &Recording, seed: u64, say: Say) -> Result<Analysis, Failure> {
     let settings =
         Settings { seed, speed_law_unit: Some(SpeedUnit::KilometresPerHour), ..Settings::default() };
     coastdown::analyse(recording, StudyInput::new(recording, &[])?, settings, say)
@@ -124,15 +124,16 @@ fn page(
         Report::new("Demonstration: a coast-down study", format!("{}.", verdict(analysis, truth)));
     report = report.with(Section::new("What was done").with(Item::Words(format!(
         "{} was simulated. The speed was sampled ten times a second and given the noise of a GPS receiver, {} m/s (one \
-         standard deviation). The logs lie in the folder `recording`, the scenario in `scenarios`; what follows was made \
+         standard deviation). The logs lie in the folder “recording”, the scenario in “scenarios”; what follows was made \
          from the logs alone.",
         scenario.about,
         short(staged::NOISE_M_S)
     ))));
-    for section in page::coastdown::page(recording, analysis)?.sections {
+    for section in page::coastdown::page(recording, analysis).sections {
         report = report.with(section);
     }
-    for mut section in of_comparison.sections {
+    for mut section in of_comparison.sections.into_iter().filter(|section| section.title != page::ABOUT_DATA)
+    {
         section.title = format!("Simulation against log: {}", section.title.to_lowercase());
         report = report.with(section);
     }

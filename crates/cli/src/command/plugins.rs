@@ -29,7 +29,7 @@ struct ListedParameter {
 }
 
 /// Runs the command.
-pub fn plugins(registry: &Registry, options: &PluginsOptions, say: &Say) -> Result<(), Failure> {
+pub fn plugins(registry: &Registry, options: &PluginsOptions, say: Say) -> Result<(), Failure> {
     let listed = match &options.kind {
         None => every(registry),
         Some(word) => chosen(registry, word)?,

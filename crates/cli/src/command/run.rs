@@ -54,7 +54,7 @@ impl Simulated {
 }
 
 /// Runs the command.
-pub fn run(registry: &Registry, options: &RunOptions, say: &Say) -> Result<(), Failure> {
+pub fn run(registry: &Registry, options: &RunOptions, say: Say) -> Result<(), Failure> {
     picture::possible(options.rerun || options.view)?;
     let scenario = Scenario::read(&options.scenario, registry)?;
     let mut output = Output::new(options.out.as_deref(), &options.scenario)?;
@@ -67,7 +67,7 @@ pub fn run(registry: &Registry, options: &RunOptions, say: &Say) -> Result<(), F
     output.page("report.html", &page::run::page(&scenario, &simulated.runs, &simulated.summary.remarks)?)?;
     picture::draw(picture::Wanted::of(options.rerun, options.view), &scenario, &traces, &[], &mut output)?;
     say.result(&told(&scenario, &simulated.summary, took_ms, &output), &simulated.summary)?;
-    match simulated.summary.runs.iter().find_map(|run| stopped(run)) {
+    match simulated.summary.runs.iter().find_map(stopped) {
         Some(reason) => Err(Failure::Requirement(reason)),
         None => Ok(()),
     }

@@ -38,7 +38,7 @@ fn said(signals: &[Signal]) -> String {
         let which = if signal.held_out.runs.is_empty() { "" } else { " in runs that were never fitted" };
         format!(
             "RMSE of {} {} → {} {}{which}.",
-            spoken(&signal.signal),
+            spoken(&signal.channel),
             super::short(part.rmse_before),
             super::short(part.rmse_after),
             signal.unit
@@ -82,7 +82,7 @@ fn errors(document: &Calibration) -> Section {
     let mut section = Section::new("Error before and after");
     let row = |signal: &Signal, what: &str, part: &Part| {
         vec![
-            Cell::from(format!("{} [{}]", spoken(&signal.signal), signal.unit)),
+            Cell::from(format!("{} [{}]", spoken(&signal.channel), signal.unit)),
             Cell::from(format!("{} {what}", part.runs.len())),
             part.rmse_before.into(),
             part.rmse_after.into(),
@@ -113,7 +113,7 @@ fn errors(document: &Calibration) -> Section {
 
 fn bars(signal: &Signal, runs: &[RunFit]) -> Plot {
     let of = |run: &RunFit, after: bool| {
-        let found = run.signals.iter().find(|one| one.signal == signal.signal);
+        let found = run.signals.iter().find(|one| one.channel == signal.channel);
         found.map_or(f64::NAN, |one| if after { one.rmse_after } else { one.rmse_before })
     };
     let name = |run: &RunFit| if run.held_out { format!("{} (held out)", run.run) } else { run.run.clone() };
@@ -124,17 +124,17 @@ fn bars(signal: &Signal, runs: &[RunFit]) -> Plot {
     };
     let bars = Bars {
         categories: runs.iter().map(name).collect(),
-        axis: Axis::new(format!("RMSE of {}", spoken(&signal.signal)), &signal.unit),
+        axis: Axis::new(format!("RMSE of {}", spoken(&signal.channel)), &signal.unit),
         bars: vec![bar("before", false), bar("after", true)],
         stacked: false,
         horizontal: true,
     };
-    Plot::new(format!("Error of {} by run", spoken(&signal.signal)), bars)
+    Plot::new(format!("Error of {} by run", spoken(&signal.channel)), bars)
 }
 
 fn detail(before: &Pair, after: &Pair) -> Result<Section, ReportError> {
     let held_out = if after.held_out { ", never fitted" } else { "" };
-    let mut section = Section::new(format!("Run {}{held_out}", after.comparison.run));
+    let mut section = Section::new(super::titled(&after.comparison.run) + held_out);
     for name in after.signals.iter().filter(|name| after.outcome.trace.get(name).is_some()) {
         let traces = [
             ("measured", &after.measured),

@@ -5,12 +5,11 @@ use crate::command::coastdown::{Analysis, with_interval};
 use headland_calibrate::coastdown::{CoastDown, Curve, Estimate, TwoStage};
 use headland_recording::Recording;
 use headland_report::{
-    Axis, Cell, Cumulative, Figure, Item, Line, Lines, Plot, Report, ReportError, Section, Series, Steps,
-    Table,
+    Axis, Cell, Cumulative, Figure, Item, Line, Lines, Plot, Report, Section, Series, Steps, Table,
 };
 
 /// Makes the page.
-pub fn page(recording: &Recording, analysis: &Analysis) -> Result<Report, ReportError> {
+pub fn page(recording: &Recording, analysis: &Analysis) -> Report {
     let result = analysis.result();
     let lede = format!(
         "Rolling resistance and road loads from {} coast-downs: {}.",
@@ -30,7 +29,7 @@ pub fn page(recording: &Recording, analysis: &Analysis) -> Result<Report, Report
     if let Some(section) = super::notices(&recording.notices, analysis.assumed()) {
         report = report.with(section);
     }
-    Ok(report)
+    report
 }
 
 fn glance(result: &CoastDown) -> Section {
@@ -57,13 +56,21 @@ fn glance(result: &CoastDown) -> Section {
     section
 }
 
+/// A name without the marks that set it off in a line of text.
+fn plain(name: &str) -> String {
+    name.replace('`', "")
+}
+
 fn figure(estimate: &Estimate) -> Figure {
     let unit = if estimate.unit == "1" { "" } else { &estimate.unit };
-    let note = estimate.interval_95.map_or_else(
-        || "too few runs for an interval".to_owned(),
-        |[low, high]| format!("95 %: {}", headland_report::with_interval(estimate.value, low, high).1),
+    let (value, note) = estimate.interval_95.map_or_else(
+        || (short(estimate.value), "too few runs for an interval".to_owned()),
+        |[low, high]| {
+            let (value, interval) = headland_report::with_interval(estimate.value, low, high);
+            (value, format!("95 %: {interval}"))
+        },
     );
-    Figure::new(estimate.name.clone(), estimate.value, unit).note(note)
+    Figure::text(plain(&estimate.name), format!("{value} {unit}").trim_end()).note(note)
 }
 
 fn fit(analysis: &Analysis) -> Section {
@@ -87,7 +94,7 @@ fn estimates(title: &str, estimates: &[Estimate]) -> Table {
             upper,
         });
         vec![
-            Cell::from(estimate.name.clone()),
+            Cell::from(plain(&estimate.name)),
             Cell::from(if estimate.unit == "1" { "" } else { &estimate.unit }),
             cell,
             estimate.standard_error.unwrap_or(f64::NAN).into(),
@@ -191,15 +198,17 @@ fn runs(result: &CoastDown) -> Section {
             Axis::new("path", ""),
             Axis::new("from", "km/h"),
             Axis::new("duration", "s"),
-            Axis::new("mean resistance", "N"),
-            Axis::new("c_w of its own", ""),
-            Axis::new("as if level and calm", ""),
-            Axis::new("off the pool", "σ"),
-            Axis::new("RMS of the residual", "m/s"),
+            Axis::new("resistance", "N"),
+            Axis::new("own c_w", ""),
+            Axis::new("apparent c_w", ""),
+            Axis::new("off", "σ"),
+            Axis::new("RMS", "m/s"),
         ],
         rows: result.runs.iter().map(run).collect(),
     };
-    let mut section = Section::new("Runs and pairs").with(table);
+    let words = "Of each run alone: its c_w with grade and wind of the path taken out, and as if the path were level and \
+                 calm; how far it lies off the pool; the root mean square of its residual.";
+    let mut section = Section::new("Runs and pairs").words(words).with(table);
     if result.pairs.is_empty() {
         return section.with(Item::Words(
             "No two runs drove the same path in opposite directions, so that grade, wind and rolling resistance are not \

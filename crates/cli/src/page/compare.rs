@@ -186,7 +186,7 @@ fn chosen<'a>(content: &Content<'a>) -> Vec<&'a Pair> {
 
 fn detail(pair: &Pair, alone: bool) -> Result<Section, ReportError> {
     let (measured, modelled) = (&pair.measured, &pair.outcome.trace);
-    let title = if alone { "The run".to_owned() } else { format!("Run {}", pair.comparison.run) };
+    let title = if alone { "The run".to_owned() } else { super::titled(&pair.comparison.run) };
     let words = match pair.drive {
         "Speed" => "The recorded speed moves the model; it says what force, torque and energy that took.",
         "Torque" => "The recorded torque moves the model; it says how the vehicle moved.",

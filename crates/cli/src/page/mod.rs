@@ -10,9 +10,17 @@ pub mod run;
 use headland_recording::Notice;
 use headland_report::{Axis, Cell, Item, Section, Table};
 
+/// Title of the section about the data.
+pub const ABOUT_DATA: &str = "What to know about the data";
+
 /// A number with four significant digits.
 pub fn short(value: f64) -> String {
     headland_report::number(value)
+}
+
+/// The title of a run: `Run r1`, and `run_01` as it is.
+fn titled(id: &str) -> String {
+    if id.to_lowercase().starts_with("run") { id.to_owned() } else { format!("Run {id}") }
 }
 
 /// Most rows of notices on a page.
@@ -23,8 +31,8 @@ fn notices(notices: &[Notice], notes: &[String]) -> Option<Section> {
     if notices.is_empty() && notes.is_empty() {
         return None;
     }
-    let mut section = Section::new("What to know about the data")
-        .words("Nothing of it was repaired: the logs were used as they are.");
+    let mut section =
+        Section::new(ABOUT_DATA).words("Nothing of it was repaired: the logs were used as they are.");
     if !notes.is_empty() {
         section = section.with(Item::Sentences(notes.to_vec()));
     }

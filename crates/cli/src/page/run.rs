@@ -113,7 +113,7 @@ fn table(runs: &[(String, Outcome)]) -> Table {
 
 fn detail(id: &str, outcome: &Outcome, alone: bool) -> Result<Section, ReportError> {
     let trace = &outcome.trace;
-    let mut section = Section::new(if alone { "The run".to_owned() } else { format!("Run {id}") })
+    let mut section = Section::new(if alone { "The run".to_owned() } else { super::titled(id) })
         .words("Drag across a plot over time to zoom all of them; double-click to see everything again.")
         .with(headland_report::build::over_time("speed_m_s", &[("simulated", trace)], Vec::new())?)
         .with(motion::forces(trace)?);

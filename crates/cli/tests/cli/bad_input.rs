@@ -41,7 +41,7 @@ fn a_misspelt_model_is_shown_with_the_one_that_was_meant() {
 
 #[test]
 fn a_unit_that_does_not_fit_is_refused_where_it_stands() {
-    holds(&scenario("\"36 km/h\"", "\"36 kg\""), &["scenario.ron:15:38", "kg", "m/s"]);
+    holds(&scenario("\"36 km/h\"", "\"36 kg\""), &["scenario.ron:15:39", "kg", "m/s"]);
     let told = recording(&RECORDING.replace("\"km/h\"", "\"kg\""), &log());
     holds(&told, &["recording.ron:4:", "`kg`", "speed_m_s"]);
 }

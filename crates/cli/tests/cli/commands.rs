@@ -183,8 +183,8 @@ fn the_demonstration_leaves_everything_behind_and_finds_its_truth() {
     let end = |index: usize| ends[index].as_f64().unwrap();
     assert!(end(0) < 0.069 && 0.069 < end(1), "{ends}");
     let rmse = json(&demo().join("comparison.json"))["channels"][0]["rmse"].as_f64().unwrap();
-    // Nothing but the noise of the sensor, 0.03 m/s, parts the simulation from its own log.
-    assert!((rmse - 0.03).abs() < 0.005, "{rmse}");
+    // The noise of the sensor, 0.03 m/s, and the initial speed that is read from noisy samples.
+    assert!((0.028..0.045).contains(&rmse), "{rmse}");
 }
 
 #[test]

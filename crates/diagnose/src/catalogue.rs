@@ -1,0 +1,548 @@
+//! The causes that are tried: each names an effect of the simulator, says how its parameters are written, and how large
+//! they usually are. Catalogue: the effects and artefacts that models of field vehicles commonly leave out.
+
+use crate::balance::Kind;
+
+/// What a finding is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    /// Something of the world.
+    Physics,
+    /// Something of a sensor.
+    Artefact,
+}
+
+/// A parameter of a cause.
+#[derive(Clone, Copy, Debug)]
+pub struct Term {
+    /// As the effect names it.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// One standard deviation of what is usual.
+    pub scale: f64,
+    /// Whether the cause is proportional to it.
+    pub linear: bool,
+    /// Whether it cannot be negative.
+    pub positive: bool,
+}
+
+/// What the vehicle and its runs are like, for scales and grids.
+#[derive(Clone, Debug)]
+pub struct Around {
+    /// Mass [kg].
+    pub mass_kg: f64,
+    /// Gravity [m/s²].
+    pub gravity_m_s2: f64,
+    /// Drag area [m²].
+    pub drag_area_m2: f64,
+    /// Speeds below which 20, 35, 50, 65 and 80 % of the samples lie [m/s].
+    pub speeds_m_s: [f64; 5],
+    /// Longest run [s].
+    pub duration_s: f64,
+    /// Channels that every run has.
+    pub channels: Vec<String>,
+    /// Whether any sample coasts.
+    pub coasts: bool,
+    /// Whether force or torque drives somewhere.
+    pub drives: bool,
+    /// Largest number of runs on one path.
+    pub passes: usize,
+    /// Range of the air temperature [K]; 0 where it is not known.
+    pub temperatures_k: f64,
+}
+
+/// How the cause enters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// By parameters.
+    Parameters,
+    /// By a function of the position along the path.
+    OverPosition,
+    /// By a function of time, of its own in each run.
+    OverTime,
+    /// By a change of what was measured.
+    Measured,
+}
+
+/// A cause that is tried.
+#[derive(Clone, Debug)]
+pub struct Cause {
+    /// The contract's identifier.
+    pub id: &'static str,
+    /// World or sensor.
+    pub class: Class,
+    /// Balances that it can explain.
+    pub balances: &'static [Kind],
+    /// How it enters.
+    pub form: Form,
+    /// Its parameters.
+    pub terms: Vec<Term>,
+    /// Values at which its non-linear parameters are tried, in the order of the terms; one empty list where there are none.
+    pub shapes: Vec<Vec<f64>>,
+    /// Its equation.
+    pub equation: &'static str,
+    /// Channels that it depends on.
+    pub depends_on: &'static [&'static str],
+    /// What a person calls it: 'a wind', 'softer ground'.
+    pub words: &'static str,
+    /// The run that would show it best.
+    pub experiment: &'static str,
+}
+
+const MOTION: &[Kind] = &[Kind::Motion, Kind::Battery, Kind::Fuel];
+
+fn linear(name: &'static str, unit: &'static str, scale: f64) -> Term {
+    Term { name, unit, scale, linear: true, positive: false }
+}
+
+fn positive(name: &'static str, unit: &'static str, scale: f64) -> Term {
+    Term { name, unit, scale, linear: true, positive: true }
+}
+
+fn shape(name: &'static str, unit: &'static str) -> Term {
+    Term { name, unit, scale: 1.0, linear: false, positive: true }
+}
+
+fn cause(
+    id: &'static str,
+    balances: &'static [Kind],
+    terms: Vec<Term>,
+    equation: &'static str,
+    depends_on: &'static [&'static str],
+    words: &'static str,
+    experiment: &'static str,
+) -> Cause {
+    Cause {
+        id,
+        class: Class::Physics,
+        balances,
+        form: Form::Parameters,
+        terms,
+        shapes: vec![Vec::new()],
+        equation,
+        depends_on,
+        words,
+        experiment,
+    }
+}
+
+impl Cause {
+    fn shaped(mut self, shapes: Vec<Vec<f64>>) -> Self {
+        self.shapes = shapes;
+        self
+    }
+
+    fn over(mut self, form: Form) -> Self {
+        self.form = form;
+        self
+    }
+
+    fn artefact(mut self) -> Self {
+        self.class = Class::Artefact;
+        self.form = Form::Measured;
+        self
+    }
+
+    /// The effect as a scenario writes it, with all parameters in the order of the terms.
+    pub fn written(&self, values: &[f64]) -> String {
+        match self.id {
+            "wind" => {
+                let (north, east) = (values[0], values[1]);
+                let from = east.atan2(north).rem_euclid(std::f64::consts::TAU);
+                format!("wind(speed_m_s: {:?}, from_rad: {from:?})", north.hypot(east))
+            }
+            "cornering_drag" => {
+                format!("cornering_drag(cornering_stiffness_n_per_rad: {:?})", 1.0 / values[0].max(1e-12))
+            }
+            "variator_loss" => format!("variator_loss(loss: {:?}, node_speeds_m_s: [{:?}])", values[0], values[1]),
+            "shift_transient" => format!(
+                "shift_transient(force_n: {:?}, speeds_m_s: [{:?}], width_m_s: {:?})",
+                values[0], values[1], values[2]
+            ),
+            _ => {
+                let fields: Vec<String> =
+                    self.terms.iter().zip(values).map(|(term, value)| format!("{}: {value:?}", term.name)).collect();
+                format!("{}({})", self.id, fields.join(", "))
+            }
+        }
+    }
+}
+
+/// The causes that the recording could show at all.
+pub fn causes(around: &Around) -> Vec<Cause> {
+    let weight = around.mass_kg * around.gravity_m_s2;
+    let has = |name: &str| around.channels.iter().any(|channel| channel == name);
+    let taus = |all: &[f64]| -> Vec<Vec<f64>> {
+        let kept: Vec<Vec<f64>> =
+            all.iter().filter(|tau| **tau < 6.0 * around.duration_s).map(|tau| vec![*tau]).collect();
+        if kept.is_empty() { vec![vec![0.5 * around.duration_s]] } else { kept }
+    };
+    let mut all = vec![
+        cause(
+            "wind",
+            MOTION,
+            vec![linear("north_m_s", "m/s", 5.0), linear("east_m_s", "m/s", 5.0)],
+            "F = ½ ρ CdA (|v − w| (v − w)ₓ − v²)",
+            &["speed_m_s", "heading_rad"],
+            "a wind",
+            "repeat two runs in each direction on a calm day",
+        ),
+        cause(
+            "grade_constant",
+            &[Kind::Motion, Kind::Battery, Kind::Fuel, Kind::Parity],
+            vec![linear("grade", "1", 0.02)],
+            "F = m g sin(atan q)",
+            &["position_m"],
+            "a slope of the whole path",
+            "drive the same lane in the other direction",
+        ),
+        cause(
+            "grade",
+            &[Kind::Motion, Kind::Battery, Kind::Fuel, Kind::Parity],
+            vec![linear("grade", "1", 0.02)],
+            "F = m g sin(atan q(x))",
+            &["position_m"],
+            "slopes along the path",
+            "drive the same path in the other direction, or log elevation",
+        )
+        .over(Form::OverPosition),
+        cause(
+            "soft_ground",
+            MOTION,
+            vec![linear("coefficient", "1", 0.02)],
+            "F = Δc(x) N",
+            &["position_m"],
+            "softer ground along the path",
+            "drive the same path in the other direction, or measure the cone index along it",
+        )
+        .over(Form::OverPosition),
+        cause(
+            "rotating_inertia",
+            MOTION,
+            vec![positive("rotating_mass_kg", "kg", 0.06 * around.mass_kg)],
+            "F = m_rot dv/dt",
+            &["acceleration_m_s2"],
+            "the inertia of rotating parts",
+            "accelerate at two different forces, or spin the wheels down on stands",
+        ),
+        cause(
+            "mass",
+            MOTION,
+            vec![linear("extra_mass_kg", "kg", 0.08 * around.mass_kg)],
+            "F = Δm (dv/dt + g (sin θ + c cos θ))",
+            &["acceleration_m_s2"],
+            "a different mass",
+            "weigh the vehicle, or repeat runs with known ballast",
+        ),
+        cause(
+            "payload_change",
+            MOTION,
+            vec![linear("mass_kg", "kg", 0.1 * around.mass_kg)],
+            "F = Δm(t) (dv/dt + g (sin θ + c cos θ))",
+            &["acceleration_m_s2", "time_s"],
+            "a load that changes on the way",
+            "weigh before and after, or log the tank's level",
+        )
+        .over(Form::OverTime),
+        cause(
+            "aerodynamic_drag",
+            MOTION,
+            vec![linear("extra_area_m2", "m²", 0.4 * around.drag_area_m2.max(0.5))],
+            "F = ½ ρ ΔCdA v²",
+            &["speed_m_s"],
+            "more aerodynamic drag",
+            "coast down from twice the speed",
+        ),
+        cause(
+            "rolling_resistance",
+            MOTION,
+            vec![linear("coefficient", "1", 0.015)],
+            "F = Δc N",
+            &[],
+            "a different level of rolling resistance",
+            "drive both directions, coasting and driven, with two masses",
+        ),
+        cause(
+            "rolling_speed_law",
+            MOTION,
+            vec![linear("linear", "1", 0.015), shape("reference_speed_m_s", "m/s")],
+            "F = Δc (v/v₀ − 1) N",
+            &["speed_m_s"],
+            "rolling resistance that depends otherwise on speed",
+            "tow or coast at 2, 5, 10 and 20 km/h",
+        )
+        .shaped(vec![vec![around.speeds_m_s[2].max(0.5)]]),
+        cause(
+            "rolling_temperature",
+            MOTION,
+            vec![positive("cold_coefficient", "1", 0.01), shape("time_constant_s", "s")],
+            "F = Δc e^(−t/τ) N",
+            &["time_s"],
+            "tyres that warm up",
+            "repeat after a rest, and again without",
+        )
+        .shaped(taus(&[60.0, 240.0, 900.0, 2400.0])),
+        cause(
+            "driveline_temperature",
+            MOTION,
+            vec![
+                linear("cold_force_n", "N", 0.006 * weight),
+                positive("cold_viscous_n_s_m", "N s/m", 0.001 * weight),
+                shape("time_constant_s", "s"),
+            ],
+            "F = (F₀ + k v) e^(−t/τ)",
+            &["time_s", "speed_m_s"],
+            "oil in the driveline that warms up",
+            "log the oil temperature; repeat with the oil warm and the tyres cold",
+        )
+        .shaped(taus(&[60.0, 240.0, 900.0, 2400.0])),
+        cause(
+            "neutral_drag",
+            MOTION,
+            vec![linear("force_n", "N", 0.006 * weight), linear("viscous_n_s_m", "N s/m", 0.0015 * weight)],
+            "F = F₀ + k v in neutral",
+            &["coasting", "speed_m_s"],
+            "drag of the driveline in neutral",
+            "coast and drive steadily at the same speed, or spin the driveline down on stands",
+        ),
+        cause(
+            "brake_drag",
+            MOTION,
+            vec![positive("force_n", "N", 0.008 * weight)],
+            "F = F₀",
+            &[],
+            "a dragging brake",
+            "feel the hubs, or turn a free wheel by hand",
+        ),
+        cause(
+            "drawbar_load",
+            MOTION,
+            vec![positive("force_n", "N", 0.02 * weight)],
+            "F = F₀",
+            &[],
+            "an implement or trailer that was not recorded",
+            "repeat without it, or log the drawbar force",
+        ),
+        cause(
+            "speed_threshold",
+            MOTION,
+            vec![
+                positive("force_n", "N", 0.015 * weight),
+                shape("threshold_m_s", "m/s"),
+                shape("width_m_s", "m/s"),
+            ],
+            "F = F₀ clamp((v − v₀)/b, 0, 1)",
+            &["speed_m_s"],
+            "a drag that sets in above a speed",
+            "hold speeds just below and just above",
+        )
+        .shaped(around.speeds_m_s.iter().flat_map(|v| [vec![*v, 0.1 * v.max(0.5)], vec![*v, 0.5 * v.max(0.5)]]).collect()),
+    ];
+    if has("curvature_per_m") {
+        all.push(cause(
+            "cornering_drag",
+            MOTION,
+            vec![positive("compliance_rad_n", "rad/N", 2.0 / weight)],
+            "F = (m v² κ)² / C_α",
+            &["speed_m_s", "curvature_per_m"],
+            "drag of the tyres in curves",
+            "drive circles of two radii, both ways",
+        ));
+    }
+    if around.passes > 2 {
+        all.push(cause(
+            "multipass",
+            MOTION,
+            vec![linear("coefficient", "1", 0.03), shape("factor", "1")],
+            "F = c (fⁿ⁻¹ − 1) N",
+            &["position_m"],
+            "ground that firms with every pass",
+            "drive a fresh lane beside the old one",
+        )
+        .shaped(vec![vec![0.9], vec![0.7]]));
+    }
+    if around.drives {
+        all.push(cause(
+            "driveline_efficiency",
+            &[Kind::Motion, Kind::Battery, Kind::Fuel],
+            vec![positive("loss", "1", 0.08)],
+            "F = −λ |F_drive|",
+            &["tractive_force_n"],
+            "a loss in the driveline in proportion to its load",
+            "drive at the same speed with two loads",
+        ));
+        all.push(
+            cause(
+                "variator_loss",
+                &[Kind::Motion, Kind::Fuel],
+                vec![positive("loss", "1", 0.1), shape("node_speed_m_s", "m/s")],
+                "F = −λ |1 − v/v_n| |F_drive|",
+                &["tractive_force_n", "speed_m_s"],
+                "losses of the variator away from its mechanical points",
+                "hold steady speeds across the range at one load",
+            )
+            .shaped(around.speeds_m_s[1..4].iter().map(|v| vec![v.max(0.5)]).collect()),
+        );
+        all.push(
+            cause(
+                "shift_transient",
+                &[Kind::Motion],
+                vec![positive("force_n", "N", 0.03 * weight), shape("speed_m_s", "m/s"), shape("width_m_s", "m/s")],
+                "F = F₀ e^(−½((v − v_s)/b)²)",
+                &["speed_m_s"],
+                "losses while ranges are shifted",
+                "ramp slowly up and down through the shift",
+            )
+            .shaped(around.speeds_m_s.iter().map(|v| vec![*v, 0.05 * v.max(1.0)]).collect()),
+        );
+    }
+    if around.temperatures_k > 3.0 {
+        all.push(
+            cause(
+                "rolling_temperature",
+                MOTION,
+                vec![
+                    shape("cold_coefficient", "1"),
+                    shape("time_constant_s", "s"),
+                    linear("coefficient_per_k", "1/K", 3e-4),
+                    shape("reference_temperature_c", "°C"),
+                ],
+                "F = k (T₀ − T) N",
+                &["air_temperature_c"],
+                "rolling resistance that rises in the cold",
+                "repeat on a warm day",
+            )
+            .shaped(vec![vec![0.0, 600.0, 20.0]]),
+        );
+        all.push(
+            cause(
+                "auxiliary_power",
+                &[Kind::Battery, Kind::Fuel],
+                vec![positive("freezing_power_w", "W", 1500.0), shape("balance_temperature_c", "°C")],
+                "P = P₀ max(0, 1 − T/T₀)",
+                &["air_temperature_c"],
+                "a heater that works by the temperature outside",
+                "repeat with the heater off",
+            )
+            .shaped(vec![vec![15.0], vec![20.0]]),
+        );
+    }
+    powers(&mut all, around);
+    sensors(&mut all, around);
+    all
+}
+
+fn powers(all: &mut Vec<Cause>, around: &Around) {
+    let _ = around;
+    all.push(cause(
+        "auxiliary_power",
+        &[Kind::Battery, Kind::Fuel],
+        vec![positive("power_w", "W", 1000.0)],
+        "P = P₀",
+        &[],
+        "a consumer that is always on",
+        "stand with the drive on, and switch consumers one by one",
+    ));
+    all.push(
+        cause(
+            "auxiliary_power",
+            &[Kind::Battery, Kind::Fuel],
+            vec![positive("power_w", "W", 1500.0)],
+            "P = P(t)",
+            &["time_s"],
+            "a consumer that is switched with time",
+            "log the current of heater, fan and hydraulics",
+        )
+        .over(Form::OverTime),
+    );
+    all.push(cause(
+        "battery_resistance",
+        &[Kind::Battery],
+        vec![linear("resistance_ohm", "ohm", 0.1)],
+        "P = ΔR I²",
+        &["battery_current_a"],
+        "a different resistance of the battery",
+        "draw a step of current at rest and log the voltage",
+    ));
+    all.push(cause(
+        "engine_friction",
+        &[Kind::Fuel],
+        vec![linear("torque_n_m", "N m", 30.0)],
+        "P = T ω / e",
+        &["engine_speed_rad_s"],
+        "more friction of the engine",
+        "motor the engine, or idle at two speeds",
+    ));
+    all.push(
+        cause(
+            "cold_start",
+            &[Kind::Fuel],
+            vec![positive("cold_torque_n_m", "N m", 30.0), shape("time_constant_s", "s")],
+            "P = T e^(−t/τ) ω / e",
+            &["time_s", "engine_speed_rad_s"],
+            "an engine that starts cold",
+            "repeat the cycle with the engine warm",
+        )
+        .shaped([60.0, 150.0, 400.0, 900.0].iter().map(|tau| vec![*tau]).collect()),
+    );
+}
+
+fn sensors(all: &mut Vec<Cause>, around: &Around) {
+    let artefact = |id, balances, term: Term, equation, words, experiment| {
+        cause(id, balances, vec![term], equation, &[], words, experiment).artefact()
+    };
+    if around.drives {
+        all.push(artefact(
+            "latency",
+            &[Kind::Motion],
+            linear("latency_s", "s", 0.1),
+            "y(t) = x(t − δ)",
+            "speed that arrives late",
+            "brake once hard with an accelerometer beside it",
+        ));
+        all.push(artefact(
+            "force_scale",
+            &[Kind::Motion],
+            linear("scale", "1", 0.05),
+            "F_measured = (1 + k) F",
+            "a force sensor with a wrong scale",
+            "hang a known weight on it, or tow with a load cell",
+        ));
+    }
+    all.push(artefact(
+        "speed_scale",
+        &[Kind::Motion, Kind::Slip],
+        linear("scale", "1", 0.03),
+        "v_measured = (1 + k) v",
+        "a speed sensor with a wrong scale",
+        "drive a measured mile",
+    ));
+    all.push(artefact(
+        "accelerometer_bias",
+        &[Kind::Parity],
+        linear("bias_m_s2", "m/s²", 0.15),
+        "f_measured = f + b",
+        "an accelerometer with an offset",
+        "stand level, and turn around on the spot",
+    ));
+    all.push(artefact(
+        "accelerometer_tilt",
+        &[Kind::Parity],
+        linear("pitch_rad_s2_m", "rad s²/m", 0.005),
+        "f_measured = f + g φ a",
+        "an accelerometer that pitches with the body",
+        "log the pitch rate",
+    ));
+    all.push(
+        cause(
+            "wheel_slip",
+            &[Kind::Slip],
+            vec![positive("coefficient", "1", 0.15)],
+            "s = k F / N",
+            &["tractive_force_n"],
+            "slip of the driven wheels",
+            "pull two loads at one speed",
+        ),
+    );
+}

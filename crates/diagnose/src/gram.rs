@@ -1,0 +1,164 @@
+//! Generalised least squares with priors: evidence, estimates, and what each run says of the others.
+//!
+//! With columns X, residual r, noise Σ and prior precision P: β = (XᵀΣ⁻¹X + P)⁻¹ XᵀΣ⁻¹r, and
+//! −2 ln p(r) = rᵀΣ⁻¹r − βᵀ(XᵀΣ⁻¹X + P)β + ln|Σ| + ln|XᵀΣ⁻¹X + P| − ln|P| + n ln 2π.
+//! Source: Bishop, *Pattern Recognition and Machine Learning* (2006), section 3.5.
+
+use crate::noise::{Noise, Whitener};
+use crate::rows::Chunk;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// A regressor: one vector for each chunk.
+pub type Column = Vec<DVector<f64>>;
+
+/// Columns and residual, whitened.
+pub struct Whitened {
+    /// One matrix for each chunk; the residual is its last column.
+    pub chunks: Vec<DMatrix<f64>>,
+    /// What whitened them.
+    pub whitener: Whitener,
+    width: usize,
+}
+
+/// Products of all columns and the residual.
+#[derive(Clone, Debug)]
+pub struct Reduced {
+    /// XᵀΣ⁻¹X.
+    pub matrix: DMatrix<f64>,
+    /// XᵀΣ⁻¹r.
+    pub vector: DVector<f64>,
+    /// rᵀΣ⁻¹r.
+    pub scalar: f64,
+    /// ln|Σ|, and what eliminated functions add.
+    pub log_determinant: f64,
+    /// Number of rows.
+    pub rows: usize,
+}
+
+/// An estimate with some of the columns.
+#[derive(Clone, Debug)]
+pub struct Estimate {
+    /// One for each column used.
+    pub beta: DVector<f64>,
+    /// (XᵀΣ⁻¹X + P)⁻¹.
+    pub covariance: DMatrix<f64>,
+    /// ln p(r).
+    pub log_evidence: f64,
+    /// rᵀΣ⁻¹r of what is left, without the prior's part.
+    pub cost: f64,
+}
+
+impl Whitened {
+    /// Whitens residual and columns.
+    pub fn new(chunks: &[Chunk], residual: &Column, columns: &[Column], noise: &Noise) -> Option<Self> {
+        let whitener = noise.whitener(chunks)?;
+        let width = columns.len();
+        let whiten = |(index, chunk): (usize, &Chunk)| {
+            let mut x = DMatrix::zeros(chunk.rows.len(), width + 1);
+            for (column, values) in columns.iter().enumerate() {
+                x.set_column(column, &values[index]);
+            }
+            x.set_column(width, &residual[index]);
+            whitener.whiten_all(chunk, &mut x);
+            x
+        };
+        let all = chunks.par_iter().enumerate().map(whiten).collect();
+        Some(Self { chunks: all, whitener, width })
+    }
+
+    /// Number of columns.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// The products over the runs that are `fit`.
+    pub fn reduced(&self, chunks: &[Chunk], fit: &[bool]) -> Reduced {
+        let products: Vec<Option<DMatrix<f64>>> = chunks
+            .par_iter()
+            .zip(&self.chunks)
+            .map(|(chunk, x)| fit[chunk.run].then(|| x.transpose() * x))
+            .collect();
+        let mut sum = DMatrix::zeros(self.width + 1, self.width + 1);
+        let (mut log_determinant, mut rows) = (0.0, 0);
+        for (chunk, product) in chunks.iter().zip(products) {
+            if let Some(product) = product {
+                sum += product;
+                log_determinant += self.whitener.log_determinant(chunk);
+                rows += chunk.rows.len();
+            }
+        }
+        Reduced {
+            matrix: sum.view((0, 0), (self.width, self.width)).into_owned(),
+            vector: sum.view((0, self.width), (self.width, 1)).column(0).into_owned(),
+            scalar: sum[(self.width, self.width)],
+            log_determinant,
+            rows,
+        }
+    }
+}
+
+impl Reduced {
+    fn chosen(&self, used: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
+        let matrix = DMatrix::from_fn(used.len(), used.len(), |row, column| self.matrix[(used[row], used[column])]);
+        (matrix, DVector::from_iterator(used.len(), used.iter().map(|index| self.vector[*index])))
+    }
+
+    /// Estimates with the columns `used`, each with its prior standard deviation (zero mean).
+    pub fn estimate(&self, used: &[usize], sd: &[f64]) -> Option<Estimate> {
+        let (matrix, vector) = self.chosen(used);
+        let mut information = matrix.clone();
+        for (row, index) in used.iter().enumerate() {
+            information[(row, row)] += sd[*index].powi(-2);
+        }
+        let cholesky = information.cholesky()?;
+        let beta = cholesky.solve(&vector);
+        if !beta.iter().all(|value| value.is_finite()) {
+            return None;
+        }
+        let log = 2.0 * cholesky.l_dirty().diagonal().iter().map(|value| value.ln()).sum::<f64>();
+        let prior: f64 = used.iter().map(|index| -2.0 * sd[*index].ln()).sum();
+        let explained = beta.dot(&vector);
+        let deviance = self.scalar - explained + self.log_determinant + log - prior
+            + self.rows as f64 * (2.0 * std::f64::consts::PI).ln();
+        let cost = self.scalar - 2.0 * explained + beta.dot(&(&matrix * &beta));
+        Some(Estimate { beta, covariance: cholesky.inverse(), log_evidence: -0.5 * deviance, cost })
+    }
+
+    /// The cost of what is left when the columns `used` have the values `beta`.
+    pub fn cost(&self, used: &[usize], beta: &DVector<f64>) -> f64 {
+        let (matrix, vector) = self.chosen(used);
+        self.scalar - 2.0 * beta.dot(&vector) + beta.dot(&(matrix * beta))
+    }
+
+    /// Squared correlation of two groups of columns, once `nuisance` is projected out: the largest canonical one.
+    pub fn squared_correlation(&self, one: &[usize], other: &[usize], nuisance: &[usize], sd: &[f64]) -> f64 {
+        let all: Vec<usize> = nuisance.iter().chain(one).chain(other).copied().collect();
+        let sum = self.chosen(&all).0;
+        let (n, p, q) = (nuisance.len(), one.len(), other.len());
+        let mut inner = sum.view((0, 0), (n, n)).into_owned();
+        for (row, index) in nuisance.iter().enumerate() {
+            inner[(row, row)] += sd[*index].powi(-2);
+        }
+        let inverse = if n > 0 { inner.try_inverse() } else { Some(DMatrix::zeros(0, 0)) };
+        let Some(inverse) = inverse else { return 1.0 };
+        let rest = |row: usize, column: usize, height: usize, width: usize| {
+            let left = sum.view((0, row), (n, height)).transpose();
+            let right = sum.view((0, column), (n, width));
+            sum.view((row, column), (height, width)).into_owned() - left * &inverse * right
+        };
+        let solve = |mut matrix: DMatrix<f64>, right: &DMatrix<f64>| {
+            for index in 0..matrix.nrows() {
+                matrix[(index, index)] *= 1.0 + 1e-9;
+            }
+            matrix.cholesky().map(|cholesky| cholesky.solve(right))
+        };
+        let cross = rest(n, n + p, p, q);
+        let left = solve(rest(n, n, p, p), &cross);
+        let right = solve(rest(n + p, n + p, q, q), &cross.transpose());
+        let (Some(left), Some(right)) = (left, right) else { return 1.0 };
+        let product = left * right;
+        let largest = product.complex_eigenvalues().iter().map(|value| value.re).fold(0.0, f64::max);
+        largest.clamp(0.0, 1.0)
+    }
+}

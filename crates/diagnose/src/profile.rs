@@ -1,0 +1,243 @@
+//! Causes whose parameter is a function: of the position along a path, or of time in one run.
+//!
+//! The function is a Gaussian process of Ornstein and Uhlenbeck on evenly spaced knots, linear in between. Its length and
+//! its size are those that make the recording most likely; so its freedom grows only as far as the data carry it.
+//! Each path (or run) has knots of its own, which are eliminated before anything else is estimated.
+//! Source: Rasmussen and Williams, *Gaussian Processes for Machine Learning* (2006), sections 2.7 and B.2.1.
+
+use crate::gram::{Column, Reduced, Whitened};
+use crate::rows::Chunk;
+use nalgebra::{DMatrix, DVector};
+
+/// How a function is spread over knots.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spread {
+    /// Distance over which it forgets itself [m or s].
+    pub length: f64,
+    /// Its standard deviation, in the unit of the cause's parameter.
+    pub size: f64,
+}
+
+/// The knots of one path or run.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// Where the first knot lies.
+    pub from: f64,
+    /// Distance between knots.
+    pub step: f64,
+    /// How many there are.
+    pub count: usize,
+}
+
+/// A function-valued cause on the rows of a balance.
+pub struct Profile<'a> {
+    /// What a parameter of one does to each row.
+    pub signature: &'a Column,
+    /// Position or time of each row.
+    pub at: Column,
+    /// Path or run of each run.
+    pub group_of: Vec<usize>,
+    /// Least and greatest `at` of each group.
+    pub extents: Vec<(f64, f64)>,
+}
+
+/// A function that was estimated.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// Knots of each group.
+    pub groups: Vec<Group>,
+    /// Values at the knots, and their standard deviations.
+    pub values: Vec<(DVector<f64>, DVector<f64>)>,
+    /// How it is spread.
+    pub spread: Spread,
+}
+
+/// Knots of a group are at most so many.
+const MOST_KNOTS: f64 = 240.0;
+/// Knots to one length of the process.
+const KNOTS_PER_LENGTH: f64 = 2.0;
+
+impl Profile<'_> {
+    /// The knots of every group.
+    pub fn groups(&self, spread: &Spread) -> Vec<Group> {
+        self.extents
+            .iter()
+            .map(|(from, to)| {
+                let range = (to - from).max(1e-9);
+                let step = (spread.length / KNOTS_PER_LENGTH).max(range / MOST_KNOTS);
+                // Between 2 and some hundreds.
+                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small and positive")]
+                let count = (range / step).ceil() as usize + 1;
+                Group { from: *from, step, count: count.max(2) }
+            })
+            .collect()
+    }
+
+    /// Eliminates the function from a whitened problem.
+    pub fn eliminate(&self, whitened: &Whitened, chunks: &[Chunk], fit: &[bool], spread: &Spread) -> Option<Reduced> {
+        let groups = self.groups(spread);
+        let mut reduced = whitened.reduced(chunks, fit);
+        for (number, group) in groups.iter().enumerate() {
+            let Some(parts) = self.parts(whitened, chunks, fit, number, group, spread) else { continue };
+            let cholesky = parts.matrix.cholesky()?;
+            let solved = cholesky.solve(&parts.cross);
+            let width = reduced.matrix.nrows();
+            let taken = parts.cross.transpose() * solved;
+            // The residual is the last column of the cross products.
+            reduced.matrix -= taken.view((0, 0), (width, width));
+            reduced.vector -= taken.view((0, width), (width, 1)).column(0);
+            reduced.scalar -= taken[(width, width)];
+            let log = 2.0 * cholesky.l_dirty().diagonal().iter().map(|value| value.ln()).sum::<f64>();
+            reduced.log_determinant += log - log_precision(group, spread);
+        }
+        Some(reduced)
+    }
+
+    /// The function itself, once the other columns `used` have the values `beta`.
+    pub fn function(
+        &self,
+        whitened: &Whitened,
+        chunks: &[Chunk],
+        fit: &[bool],
+        spread: &Spread,
+        used: &[usize],
+        beta: &DVector<f64>,
+    ) -> Function {
+        let groups = self.groups(spread);
+        let values = groups.iter().enumerate().map(|(number, group)| {
+            let nothing = || {
+                let size = DVector::from_element(group.count, spread.size);
+                (DVector::zeros(group.count), size)
+            };
+            let Some(parts) = self.parts(whitened, chunks, fit, number, group, spread) else { return nothing() };
+            let Some(cholesky) = parts.matrix.cholesky() else { return nothing() };
+            let mut right = parts.cross.column(parts.cross.ncols() - 1).into_owned();
+            for (index, column) in used.iter().enumerate() {
+                right -= parts.cross.column(*column) * beta[index];
+            }
+            let sd = cholesky.inverse().diagonal().map(f64::sqrt);
+            (cholesky.solve(&right), sd)
+        });
+        Function { values: values.collect(), groups: groups.clone(), spread: *spread }
+    }
+
+    fn parts(
+        &self,
+        whitened: &Whitened,
+        chunks: &[Chunk],
+        fit: &[bool],
+        number: usize,
+        group: &Group,
+        spread: &Spread,
+    ) -> Option<Parts> {
+        let width = whitened.width();
+        let mut matrix = precision(group, spread);
+        let mut cross = DMatrix::zeros(group.count, width + 1);
+        let mut any = false;
+        for (index, chunk) in chunks.iter().enumerate() {
+            if !fit[chunk.run] || self.group_of[chunk.run] != number {
+                continue;
+            }
+            any = true;
+            let (first, mut basis) = self.basis(index, chunk, group);
+            whitened.whitener.whiten_all(chunk, &mut basis);
+            let own = basis.transpose() * &basis;
+            let with = basis.transpose() * &whitened.chunks[index];
+            let local = basis.ncols();
+            let mut view = matrix.view_mut((first, first), (local, local));
+            view += own;
+            let mut view = cross.view_mut((first, 0), (local, width + 1));
+            view += with;
+        }
+        any.then_some(Parts { matrix, cross })
+    }
+
+    /// Signature times hat functions, for the knots that a chunk touches.
+    fn basis(&self, index: usize, chunk: &Chunk, group: &Group) -> (usize, DMatrix<f64>) {
+        let at = &self.at[index];
+        let low = knot(group, at.min()).0;
+        let high = (knot(group, at.max()).0 + 1).min(group.count - 1);
+        let mut basis = DMatrix::zeros(chunk.rows.len(), high - low + 1);
+        for row in 0..chunk.rows.len() {
+            let (left, share) = knot(group, at[row]);
+            basis[(row, left - low)] += (1.0 - share) * self.signature[index][row];
+            if left < high {
+                basis[(row, left + 1 - low)] += share * self.signature[index][row];
+            }
+        }
+        (low, basis)
+    }
+}
+
+struct Parts {
+    matrix: DMatrix<f64>,
+    cross: DMatrix<f64>,
+}
+
+/// The knot to the left, and the share of the way to the next.
+fn knot(group: &Group, at: f64) -> (usize, f64) {
+    let steps = ((at - group.from) / group.step).clamp(0.0, (group.count - 1) as f64);
+    // Clamped just above.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and the count")]
+    let left = (steps.floor() as usize).min(group.count.saturating_sub(2));
+    (left, steps - left as f64)
+}
+
+impl Function {
+    /// Its value somewhere.
+    pub fn value(&self, group: usize, at: f64) -> f64 {
+        let (left, share) = knot(&self.groups[group], at);
+        let values = &self.values[group].0;
+        (1.0 - share) * values[left] + share * values[(left + 1).min(values.len() - 1)]
+    }
+
+    /// Where the knots of a group lie.
+    pub fn knots(&self, group: usize) -> Vec<f64> {
+        let Group { from, step, count } = self.groups[group];
+        (0..count).map(|index| from + step * index as f64).collect()
+    }
+}
+
+fn forgetting(group: &Group, spread: &Spread) -> f64 {
+    (-group.step / spread.length).exp()
+}
+
+fn precision(group: &Group, spread: &Spread) -> DMatrix<f64> {
+    let phi = forgetting(group, spread);
+    let scale = 1.0 / (spread.size * spread.size * (1.0 - phi * phi));
+    let last = group.count - 1;
+    DMatrix::from_fn(group.count, group.count, |row, column| match row.abs_diff(column) {
+        0 if row == 0 || row == last => scale,
+        0 => scale * (1.0 + phi * phi),
+        1 => -scale * phi,
+        _ => 0.0,
+    })
+}
+
+/// ln |P| in closed form.
+fn log_precision(group: &Group, spread: &Spread) -> f64 {
+    let phi = forgetting(group, spread);
+    -(group.count as f64) * 2.0 * spread.size.ln() - (group.count - 1) as f64 * (1.0 - phi * phi).ln()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_closed_form_of_the_determinant_is_that_of_the_matrix() {
+        let group = Group { from: 0.0, step: 3.0, count: 7 };
+        let spread = Spread { length: 10.0, size: 0.3 };
+        let direct = precision(&group, &spread).determinant().ln();
+        assert!((direct - log_precision(&group, &spread)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_precision_is_the_inverse_of_an_exponential_covariance() {
+        let group = Group { from: 0.0, step: 3.0, count: 5 };
+        let spread = Spread { length: 10.0, size: 0.3 };
+        let covariance = precision(&group, &spread).try_inverse().unwrap();
+        let expected = 0.09 * (-6.0_f64 / 10.0).exp();
+        assert!((covariance[(1, 3)] - expected).abs() < 1e-12 && (covariance[(2, 2)] - 0.09).abs() < 1e-12);
+    }
+}

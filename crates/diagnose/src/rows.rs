@@ -1,0 +1,119 @@
+//! A recorded run as rows: one for each pair of neighbouring blocks of samples.
+//!
+//! The weak form of a balance. Averaged with the hat function over two blocks of length T,
+//! m dv/dt = F becomes m (v̄₂ − v̄₁)/T = ⟨F⟩: every sample counts and none is differentiated. White noise of the speed
+//! comes out with a known covariance, 2 on the diagonal and −1 beside it.
+//!
+//! Source: the test-function form of system identification, Messenger and Bortz, *Multiscale Model. Simul.* 19 (2021),
+//! with the hat as test function.
+
+/// Which samples make a row.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// First sample of the first block, first of the second, and the one behind it.
+    pub samples: [usize; 3],
+    /// Weight of each sample, 1 in all.
+    pub weights: Vec<f64>,
+    /// Middle of the row [s].
+    pub time_s: f64,
+}
+
+/// Rows that follow each other without a gap.
+#[derive(Clone, Debug)]
+pub struct Chunk {
+    /// Index of the run.
+    pub run: usize,
+    /// Its rows.
+    pub rows: Vec<Row>,
+}
+
+/// Longer chunks cost more than they tell: the covariance is dense within a chunk.
+const LONGEST_CHUNK: usize = 150;
+/// A shorter chunk tells less about the noise than its ends disturb.
+const SHORTEST_CHUNK: usize = 4;
+
+/// Cuts a run into chunks of rows of blocks `block_s` long. Samples that are not `usable` break a chunk.
+pub fn chunks(run: usize, time_s: &[f64], usable: &[bool], block_s: f64) -> Vec<Chunk> {
+    let mut chunks = Vec::new();
+    let Some(&start) = time_s.first() else { return chunks };
+    let mut open: Vec<Row> = Vec::new();
+    let mut close = |open: &mut Vec<Row>| {
+        let rows = std::mem::take(open);
+        let pieces = rows.len().div_ceil(LONGEST_CHUNK).max(1);
+        for piece in rows.chunks(rows.len().div_ceil(pieces).max(1)) {
+            if piece.len() >= SHORTEST_CHUNK {
+                chunks.push(Chunk { run, rows: piece.to_vec() });
+            }
+        }
+    };
+    let block_of = |sample: usize| ((time_s[sample] - start) / block_s + 1e-9).floor();
+    let mut blocks: Vec<(f64, usize, usize)> = Vec::new();
+    for sample in 0..time_s.len() {
+        let block = block_of(sample);
+        match blocks.last_mut() {
+            Some((number, _, end)) if *number == block => *end = sample + 1,
+            _ => blocks.push((block, sample, sample + 1)),
+        }
+    }
+    for pair in blocks.windows(2) {
+        let ((one, from, middle), (two, _, to)) = (pair[0], pair[1]);
+        let whole = (from..to).all(|sample| usable[sample]);
+        if two - one > 1.5 || !whole {
+            close(&mut open);
+            continue;
+        }
+        let edge_s = start + two * block_s;
+        let hat = |sample: usize| (1.0 - (time_s[sample] - edge_s).abs() / block_s).max(1e-3);
+        let sum: f64 = (from..to).map(hat).sum();
+        open.push(Row {
+            samples: [from, middle, to],
+            weights: (from..to).map(|sample| hat(sample) / sum).collect(),
+            time_s: edge_s,
+        });
+    }
+    close(&mut open);
+    chunks
+}
+
+impl Row {
+    /// Hat-weighted mean of samples.
+    pub fn mean(&self, samples: &[f64]) -> f64 {
+        let range = self.samples[0]..self.samples[2];
+        samples[range].iter().zip(&self.weights).map(|(value, weight)| value * weight).sum()
+    }
+
+    /// Slope of samples: the difference of the blocks' means over that of their times.
+    pub fn slope(&self, time_s: &[f64], samples: &[f64]) -> f64 {
+        let [from, middle, to] = self.samples;
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        (mean(&samples[middle..to]) - mean(&samples[from..middle]))
+            / (mean(&time_s[middle..to]) - mean(&time_s[from..middle]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_weak_form_of_a_line_and_of_a_parabola_is_exact() {
+        let time_s: Vec<f64> = (0..100).map(|index| 0.1 * f64::from(index)).collect();
+        let chunks = chunks(0, &time_s, &[true; 100], 0.5);
+        let speed: Vec<f64> = time_s.iter().map(|time| 3.0 - 0.4 * time * time).collect();
+        let force: Vec<f64> = time_s.iter().map(|time| -0.8 * time).collect();
+        for row in &chunks[0].rows {
+            let middle = row.slope(&time_s, &speed);
+            assert!((middle - row.mean(&force)).abs() < 0.03, "{middle} against {}", row.mean(&force));
+        }
+    }
+
+    #[test]
+    fn a_gap_and_an_unusable_sample_break_a_chunk() {
+        let time_s: Vec<f64> = (0..100).map(|index| 0.1 * f64::from(index) + if index >= 50 { 3.0 } else { 0.0 }).collect();
+        let mut usable = vec![true; 100];
+        usable[75] = false;
+        let chunks = chunks(0, &time_s, &usable, 0.2);
+        assert_eq!(chunks.len(), 3);
+        assert!(chunks.iter().flat_map(|chunk| &chunk.rows).all(|row| !(row.samples[0]..row.samples[2]).contains(&75)));
+    }
+}

@@ -1,0 +1,50 @@
+//! Every scenario of the project, read and driven.
+
+use crate::{files_below, root};
+use headland_scenario::Scenario;
+use headland_sim::{End, simulate};
+use std::path::PathBuf;
+
+/// Files at the top of `scenarios/`; those below it are pieces that they include, and descriptions of recordings.
+fn scenarios() -> Vec<PathBuf> {
+    let folder = root().join("scenarios");
+    let mut files = files_below(&folder);
+    files.retain(|path| path.parent() == Some(&folder) && path.extension().is_some_and(|end| end == "ron"));
+    files
+}
+
+#[test]
+fn every_scenario_reads_without_a_remark_and_runs_to_its_end() {
+    let registry = headland_stock::registry();
+    let files = scenarios();
+    assert!(files.len() >= 5, "{files:?}");
+    for path in files {
+        let name = path.display();
+        let whole =
+            Scenario::read(&path, &registry).unwrap_or_else(|error| panic!("{name}: {}", error.told()));
+        assert!(whole.remarks.is_empty(), "{name}: {:?}", whole.remarks);
+        let runs: Vec<Scenario> = if whole.runs.is_empty() {
+            vec![whole]
+        } else {
+            whole.runs.iter().map(|run| whole.run(run, &registry).unwrap()).collect()
+        };
+        for scenario in runs {
+            let Some(cycle) = &scenario.cycle else { continue };
+            let outcome = simulate(&scenario.model(&registry).unwrap(), cycle).unwrap();
+            assert_eq!(outcome.end, End::Finished, "{name}");
+            assert!(outcome.ledger.relative_residual() < 1e-6, "{name}: {:?}", outcome.ledger);
+        }
+    }
+}
+
+/// What a scenario includes has to be used by one.
+#[test]
+fn every_piece_is_included_by_a_scenario() {
+    let texts: Vec<String> = scenarios().iter().map(|path| std::fs::read_to_string(path).unwrap()).collect();
+    for folder in ["vehicles", "grounds"] {
+        for path in files_below(&root().join("scenarios").join(folder)) {
+            let include = format!("\"{folder}/{}\"", path.file_name().unwrap().to_string_lossy());
+            assert!(texts.iter().any(|text| text.contains(&include)), "nothing includes {include}");
+        }
+    }
+}

@@ -38,7 +38,9 @@ impl Plugin for Snow {
             parameter("compaction_pressure_pa", "Pa", "at which the snow gives way, p")
                 .must_be(Bound::NotNegative)
                 .usually(1e3, 1e5),
-            parameter("depth_m", "m", "by which it gives way, z").must_be(Bound::NotNegative).usually(0.0, 0.5),
+            parameter("depth_m", "m", "by which it gives way, z")
+                .must_be(Bound::NotNegative)
+                .usually(0.0, 0.5),
         ],
     };
 }

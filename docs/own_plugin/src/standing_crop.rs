@@ -28,7 +28,9 @@ impl Plugin for StandingCrop {
         source: "empirical",
         validity: "one pass over a crop of one height; leaves out what stays behind bent",
         parameters: &[
-            parameter("force_n", "N", "in the middle of the crop, F₀").must_be(Bound::NotNegative).usually(10.0, 5000.0),
+            parameter("force_n", "N", "in the middle of the crop, F₀")
+                .must_be(Bound::NotNegative)
+                .usually(10.0, 5000.0),
             parameter("from_m", "m", "position at which it begins").usually(0.0, 1e5),
             parameter("to_m", "m", "position at which it ends").usually(0.0, 1e5),
             parameter("lag_s", "s", "time in which the force grows and dies away, τ")

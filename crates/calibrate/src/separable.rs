@@ -24,7 +24,9 @@ pub struct Blind {
 }
 
 /// Below this share of its own effect, what is left of a candidate is rounding.
-const ROUNDING: f64 = 1e-9;
+const ROUNDING: f64 = 1e-7;
+/// A candidate with less than this share of the strongest effect has none.
+const NO_EFFECT: f64 = 1e-15;
 /// An imitator that contributes less than this share of the effect is left out of the answer.
 const NEGLIGIBLE: f64 = 0.02;
 
@@ -35,26 +37,20 @@ pub fn blind_directions(information: &DMatrix<f64>, sizes: &[f64]) -> Vec<Blind>
     let scaled = &scale * information * &scale;
     let strongest = scaled.diagonal().amax();
     let mut accepted: Vec<usize> = Vec::new();
+    // What has an effect of its own, however weak: nothing may be exactly like it.
+    let mut distinct: Vec<usize> = Vec::new();
     let mut blind = Vec::new();
     for candidate in 0..sizes.len() {
         let own = scaled[(candidate, candidate)];
-        if own.is_nan() || own <= ROUNDING * 1e-6 * strongest {
+        if own.is_nan() || own <= NO_EFFECT * strongest {
             blind.push(Blind { candidate, exact: true, imitated_by: Vec::new(), deviation: f64::INFINITY });
             continue;
         }
-        let imitation = imitation(&scaled, &accepted, candidate);
-        let explained: f64 = accepted
-            .iter()
-            .zip(imitation.iter())
-            .map(|(other, beta)| beta * scaled[(*other, candidate)])
-            .sum();
+        let exact = own - explained(&scaled, &distinct, candidate).1 < ROUNDING * own;
+        let others = if exact { &distinct } else { &accepted };
+        let (imitation, explained) = explained(&scaled, others, candidate);
         let left = own - explained;
-        let exact = left < ROUNDING * own;
-        if !exact && left >= 1.0 {
-            accepted.push(candidate);
-            continue;
-        }
-        let imitated_by = accepted
+        let imitated_by = others
             .iter()
             .zip(imitation.iter())
             .filter(|(other, beta)| {
@@ -62,6 +58,13 @@ pub fn blind_directions(information: &DMatrix<f64>, sizes: &[f64]) -> Vec<Blind>
             })
             .map(|(other, beta)| (*other, beta * sizes[*other] / sizes[candidate]))
             .collect();
+        if !exact {
+            distinct.push(candidate);
+            if left >= 1.0 {
+                accepted.push(candidate);
+                continue;
+            }
+        }
         let deviation = if exact { f64::INFINITY } else { sizes[candidate] / left.sqrt() };
         let hidden = explained > 0.5 * own;
         blind.push(Blind {
@@ -72,6 +75,14 @@ pub fn blind_directions(information: &DMatrix<f64>, sizes: &[f64]) -> Vec<Blind>
         });
     }
     blind
+}
+
+/// How others would have to move to do what one size of this candidate does, and how much of its effect that is.
+fn explained(scaled: &DMatrix<f64>, others: &[usize], candidate: usize) -> (DVector<f64>, f64) {
+    let imitation = imitation(scaled, others, candidate);
+    let explained =
+        others.iter().zip(imitation.iter()).map(|(other, beta)| beta * scaled[(*other, candidate)]).sum();
+    (imitation, explained)
 }
 
 /// How the accepted candidates would have to move to do what one size of this one does.

@@ -44,6 +44,8 @@ pub enum Command {
     Compare(CompareOptions),
     /// Fit the free parameters of a scenario to a recording
     Calibrate(CalibrateOptions),
+    /// Find the physics that a scenario left out
+    Diagnose(DiagnoseOptions),
     /// Rolling resistance and road loads from coast-downs
     Coastdown(CoastdownOptions),
     /// A built-in example that needs no file
@@ -106,6 +108,20 @@ pub struct CalibrateOptions {
     /// What is fitted to what
     #[command(flatten)]
     pub held: HeldOptions,
+}
+
+/// Options of `headland diagnose`.
+#[derive(Args, Debug)]
+pub struct DiagnoseOptions {
+    /// What is held against what
+    #[command(flatten)]
+    pub held: HeldOptions,
+    /// Leave a cause out of the library, as in `--without wind`: and if it is not the wind? Repeatable
+    #[arg(long, value_name = "ID")]
+    pub without: Vec<String>,
+    /// Try just this cause; repeatable
+    #[arg(long, value_name = "ID")]
+    pub only: Vec<String>,
 }
 
 /// Options of `headland coastdown`.

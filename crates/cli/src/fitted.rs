@@ -248,7 +248,7 @@ fn free(study: &Study) -> String {
 }
 
 /// Names the folder of the scenario in it, if it needs files from there.
-fn with_folder(scenario: &Scenario, text: &str, registry: &Registry) -> Result<String, Failure> {
+pub fn with_folder(scenario: &Scenario, text: &str, registry: &Registry) -> Result<String, Failure> {
     let nowhere = Path::new("nowhere");
     let has_folder = scenario.document().find("folder").is_some();
     if !has_folder && Scenario::of_text("scenario.ron", text, nowhere, registry).is_ok() {

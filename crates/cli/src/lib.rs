@@ -9,7 +9,9 @@
 //! ```
 
 mod arguments;
+mod block;
 mod command;
+mod corrected;
 mod embedded;
 mod failure;
 mod fitted;
@@ -65,6 +67,9 @@ fn begin(registry: &Registry, arguments: &Arguments, say: Say) -> Result<(), Fai
         Command::Check(options) => command::check::check(registry, options, say),
         Command::Compare(options) => command::compare::compare(registry, options, say),
         Command::Calibrate(options) => command::calibrate::calibrate(registry, options, say),
+        Command::Diagnose(options) => {
+            command::diagnose::diagnose(registry, options, arguments.common.seed, say)
+        }
         Command::Coastdown(options) => command::coastdown::coastdown(options, arguments.common.seed, say),
         Command::Demo(options) => command::demo::demo(registry, options, arguments.common.seed, say),
         Command::Plugins(options) => command::plugins::plugins(registry, options, say),

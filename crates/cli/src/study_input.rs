@@ -1,5 +1,6 @@
 //! What a coast-down analysis needs, from a recording and from the command line.
 
+use crate::block;
 use crate::failure::Failure;
 use headland_calibrate::coastdown::{CoastRun, Constant, SpeedUnit};
 use headland_plugin::closest;
@@ -119,9 +120,17 @@ fn coast_run(
     if drag_area_m2.is_none() || air_density_kg_m3.is_none() {
         say_once("`drag_area_m2` or `air_density_kg_m3` is not known: c_w holds the air drag too");
     }
+    let mut trace = with_constants(&run.trace, constant)?;
+    if block::is_fast(&trace) {
+        say_once(&format!(
+            "the logs are faster than a roll-out: means over {} s are analysed",
+            block::BLOCK_S
+        ));
+        trace = block::means(&trace)?;
+    }
     Ok(CoastRun {
         id: run.id.clone(),
-        trace: with_constants(&run.trace, constant)?,
+        trace,
         path: run.path.clone(),
         reversed: run.reversed,
         mass_kg,

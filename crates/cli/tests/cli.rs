@@ -1,4 +1,5 @@
 //! The program as its users meet it: commands in, files and exit status out.
+#![expect(clippy::print_stderr, reason = "a test that is skipped, or that measures, says so")]
 
 #[path = "cli/bad_input.rs"]
 mod bad_input;

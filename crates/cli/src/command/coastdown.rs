@@ -77,7 +77,10 @@ pub fn analyse(
     settings.speed_law_unit = Some(unit);
     say.progress(&format!("fitting {} runs", runs.len()));
     let study = Study::new(&runs, &settings)?;
-    let result = study.analyse()?;
+    let mut result = study.analyse()?;
+    if !stated {
+        result.null_space.retain(|sentence| !sentence.starts_with("The unit of v"));
+    }
     if let (false, Some(law)) = (stated, &result.speed_law) {
         let others: Vec<String> = law
             .units

@@ -5,5 +5,6 @@ pub mod check;
 pub mod coastdown;
 pub mod compare;
 pub mod demo;
+pub mod diagnose;
 pub mod plugins;
 pub mod run;

@@ -3,6 +3,7 @@
 pub mod calibrate;
 pub mod coastdown;
 pub mod compare;
+pub mod diagnose;
 mod energy;
 mod motion;
 pub mod run;

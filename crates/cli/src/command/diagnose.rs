@@ -1,0 +1,100 @@
+//! `headland diagnose`: finds the physics that a scenario left out.
+
+use crate::arguments::DiagnoseOptions;
+use crate::failure::{Failure, interrupted};
+use crate::held;
+use crate::output::Output;
+use crate::page;
+use crate::say::Say;
+use headland_diagnose::{DiagnoseError, Diagnosed, Options, Progress, diagnose as find};
+use headland_plugin::Registry;
+use headland_scenario::Scenario;
+use std::fmt::Write;
+use std::path::Path;
+
+struct Steps(Say);
+
+impl Progress for Steps {
+    fn step(&self, what: &str) {
+        self.0.progress(&format!("diagnosis: {what}"));
+    }
+
+    fn interrupted(&self) -> bool {
+        interrupted()
+    }
+}
+
+impl From<DiagnoseError> for Failure {
+    fn from(error: DiagnoseError) -> Self {
+        match error {
+            DiagnoseError::Interrupted => Self::Interrupted,
+            DiagnoseError::Study(error) => error.into(),
+            other => Self::Input(other.to_string()),
+        }
+    }
+}
+
+/// Runs the command.
+pub fn diagnose(registry: &Registry, options: &DiagnoseOptions, seed: u64, say: Say) -> Result<(), Failure> {
+    let scenario = Scenario::read(&options.held.scenario, registry)?;
+    let recording = held::read_recording(&options.held.recording, say)?;
+    let mut output = Output::new(options.held.out.as_deref(), &options.held.scenario)?;
+    let wanted = Options { without: options.without.clone(), only: options.only.clone(), seed };
+    let found = find(&scenario, &recording, registry, &wanted, &Steps(say))?;
+    output.json("diagnosis.json", &found.diagnosis)?;
+    output.traces("effects.parquet", &found.effects)?;
+    scenarios(&mut output, registry, &scenario, &found)?;
+    recording_text(&mut output, &options.held.recording, &found)?;
+    let page = page::diagnose::page(&scenario.about, &recording, &found)?;
+    output.page("report.html", &page)?;
+    say.result(&told(&found, &output), &found.diagnosis)
+}
+
+/// The improved scenario; files that its plugins name are found from where the first one lay.
+fn scenarios(
+    output: &mut Output,
+    registry: &Registry,
+    scenario: &Scenario,
+    found: &Diagnosed,
+) -> Result<(), Failure> {
+    for (index, text) in found.scenarios.iter().enumerate() {
+        let name = if index == 0 { "scenario.ron".to_owned() } else { format!("scenario_{}.ron", index + 1) };
+        let text = crate::fitted::with_folder(scenario, text, registry)?;
+        output.text(&name, &text)?;
+    }
+    Ok(())
+}
+
+/// The improved description of the recording: the same one with what was found of its sensors.
+fn recording_text(output: &mut Output, path: &Path, found: &Diagnosed) -> Result<(), Failure> {
+    let text = crate::corrected::description(path, &found.corrections)?;
+    output.text("recording.ron", &text).map(drop)
+}
+
+fn told(found: &Diagnosed, output: &Output) -> String {
+    let diagnosis = &found.diagnosis;
+    let mut text = format!("{}\n", diagnosis.answer);
+    for finding in &diagnosis.findings {
+        let _ = writeln!(text, "\n  {}  ({})\n    {}", finding.id, finding.equation, finding.sentence);
+        for stretch in finding.stretches.iter().take(4) {
+            let _ = writeln!(
+                text,
+                "    where  {} from {:.1} to {:.1} s, {:.0} to {:.0} m",
+                stretch.run, stretch.from_s, stretch.to_s, stretch.from_position_m, stretch.to_position_m
+            );
+        }
+        let more = finding.stretches.len().saturating_sub(4);
+        if more > 0 {
+            let _ = writeln!(text, "           and {more} more");
+        }
+        let _ = writeln!(text, "    next   {}", finding.next_experiment);
+    }
+    for sentence in &diagnosis.null_space {
+        let _ = writeln!(text, "  cannot tell  {sentence}");
+    }
+    for note in &diagnosis.notes {
+        let _ = writeln!(text, "  note     {note}");
+    }
+    let _ = writeln!(text, "  written  {}", output.told());
+    text
+}

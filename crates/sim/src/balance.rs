@@ -6,6 +6,11 @@
 //! Source: Newton's second law along the path, with rotating parts reduced to the wheel
 //! (Mitschke and Wallentowitz, *Dynamik der Kraftfahrzeuge* (2014), chapter A).
 
+#![allow(
+    clippy::inline_always,
+    reason = "in three of four stages of a step nobody looks at the instant; inlined, it is not even put together"
+)]
+
 use crate::ledger::{
     AIR, AUXILIARY, BRAKES, DRAWBAR, FIRST_LOSS, HYDRAULICS, PTO, SLOPE, SOIL, SOURCE, Slots,
 };
@@ -98,6 +103,7 @@ impl Model {
         clippy::too_many_arguments,
         reason = "the inner loop: everything is passed, nothing is allocated"
     )]
+    #[inline(always)]
     pub(crate) fn balance(
         &self,
         point: Point,
@@ -218,6 +224,7 @@ impl Model {
     }
 
     /// Resistance of the ground, and force of the air, forward [N].
+    #[inline(always)]
     fn ground_and_air_n(&self, situation: &Situation, rolling_speed: f64) -> (f64, f64) {
         let Situation { position_m, speed_m_s, place, air, .. } = *situation;
         let weight_n = situation.mass_kg * self.gravity_m_s2;
@@ -239,6 +246,7 @@ impl Model {
     }
 
     /// The force to ask of the driveline where `situation` holds the one that is wanted.
+    #[inline(always)]
     fn govern(
         &self,
         situation: &Situation,
@@ -261,6 +269,7 @@ impl Model {
     }
 
     /// Where the vehicle is, and in what air.
+    #[inline(always)]
     fn situation(&self, point: Point, command: Command, given: &Given) -> Situation {
         let position_m = given.reversed_from_m.map_or(point.position_m, |from_m| from_m - point.position_m);
         let mut place = self.terrain.at(position_m);
@@ -299,6 +308,7 @@ impl Model {
     }
 
     /// What effects and tasks add up to; the mass of the situation grows by what they carry.
+    #[inline(always)]
     fn sums(
         &self,
         situation: &mut Situation,
@@ -346,6 +356,7 @@ impl Model {
     }
 
     /// Asks every effect what it does.
+    #[inline(always)]
     fn ask(
         &self,
         situation: &Situation,
@@ -380,6 +391,7 @@ struct Sums {
 }
 
 /// Writes the power of every account [W]; `way` is the direction in which resistances act.
+#[inline(always)]
 fn book(instant: &Instant, way: f64, given: &Given, slots: &Slots, actions: &[Action], powers: &mut [f64]) {
     let speed_m_s = instant.situation.speed_m_s;
     powers[SOURCE] = instant.delivery.source_power_w;

@@ -123,6 +123,8 @@ impl<'a> Machine<'a> {
         self.first_kinetic_j.map_or(0.0, |first| self.kinetic_j(self.mass_kg) - first)
     }
 
+    #[allow(clippy::inline_always, reason = "see the balance")]
+    #[inline(always)]
     fn derive(
         &mut self,
         time_s: f64,

@@ -11,6 +11,7 @@ mod drawbar_load;
 mod driveline_efficiency;
 mod driveline_temperature;
 mod engine_friction;
+mod expression;
 mod grade;
 mod grade_constant;
 mod load_dependence;
@@ -45,6 +46,7 @@ pub use drawbar_load::DrawbarLoad;
 pub use driveline_efficiency::DrivelineEfficiency;
 pub use driveline_temperature::DrivelineTemperature;
 pub use engine_friction::EngineFriction;
+pub use expression::Expression;
 pub use grade::Grade;
 pub use grade_constant::GradeConstant;
 pub use load_dependence::LoadDependence;
@@ -102,4 +104,6 @@ pub fn register(registry: &mut Registry) {
     registry.effect::<ColdStart>();
     registry.effect::<RegenerationLimit>();
     registry.effect::<BatteryResistance>();
+    // Whatever else there is.
+    registry.effect::<Expression>();
 }

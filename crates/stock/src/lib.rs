@@ -19,7 +19,7 @@ mod tests {
     use headland_plugin::{Card, Kind, Parameter};
 
     /// The effects that every version knows.
-    const EFFECTS: [&str; 30] = [
+    const EFFECTS: [&str; 31] = [
         "wind",
         "grade",
         "grade_constant",
@@ -50,6 +50,7 @@ mod tests {
         "cold_start",
         "regeneration_limit",
         "battery_resistance",
+        "expression",
     ];
 
     #[test]

@@ -26,7 +26,7 @@ const BATTERY: (&str, &str) = (
 );
 
 /// Each effect with parameters that show, and a channel in which they show: on the car, or on the tractor.
-const EFFECTS: [(&str, &str, &str); 30] = [
+const EFFECTS: [(&str, &str, &str); 31] = [
     ("wind", "(speed_m_s: 4.0, from_rad: 0.5)", "tractive_force_n"),
     ("grade", "(positions_m: [0.0, 40.0, 90.0], grades: [0.0, 0.03, -0.01])", "tractive_force_n"),
     ("grade_constant", "(grade: 0.02)", "tractive_force_n"),
@@ -61,6 +61,12 @@ const EFFECTS: [(&str, &str, &str); 30] = [
     ("cold_start", "(cold_torque_n_m: 40.0, time_constant_s: 10.0)", "fuel_rate_kg_s"),
     ("regeneration_limit", "(power_w: 2000.0)", "brake_force_n"),
     ("battery_resistance", "(resistance_ohm: 0.1)", "battery_voltage_v"),
+    (
+        "expression",
+        "(resistance: \"c * N * tanh(v / v0_m_s)\", auxiliary_power: \"300 * one_w * (v > v0_m_s)\", \
+          constants: {\"c\": 0.01, \"v0_m_s\": 2.0, \"one_w\": 1.0})",
+        "tractive_force_n",
+    ),
 ];
 
 fn needs_engine(effect: &str) -> bool {
@@ -228,4 +234,32 @@ fn a_run_against_the_path_meets_its_slopes_from_the_other_end() {
     let effect_n = at_time(&back, "grade_n", early_s);
     assert!((effect_n / (0.04 * weight_n) - 1.0).abs() < 2e-3, "{effect_n}");
     assert_eq!(at_time(&back, "grade_n", late_s), 0.0);
+}
+
+/// The simulation ends with its reason, at the time when the root of a negative number is asked for.
+#[test]
+fn a_formula_without_a_value_stops_the_simulation() {
+    for formula in ["resistance", "force"] {
+        let parameters = format!(
+            "({formula}: \"f_n * sqrt(1 - t / end_s)\", constants: {{\"f_n\": 50.0, \"end_s\": 4.0}})"
+        );
+        let outcome = drive(&model(false, &[("expression", &parameters)]));
+        let End::Stopped { time_s, reason, .. } = &outcome.end else {
+            panic!("{formula}: {:?}", outcome.end)
+        };
+        assert!((time_s - 4.0).abs() < 0.02 && reason.contains("not a finite number"), "{formula}: {reason}");
+    }
+}
+
+/// The drive cannot give what is not known, so a run that needs it does not finish.
+#[test]
+fn a_power_without_a_value_leaves_no_drive() {
+    for (formula, engine) in [("auxiliary_power", false), ("shaft_power", true)] {
+        let parameters = format!(
+            "({formula}: \"f_w * sqrt(1 - t / end_s)\", constants: {{\"f_w\": 50.0, \"end_s\": 4.0}})"
+        );
+        let outcome = drive(&model(engine, &[("expression", &parameters)]));
+        let End::Stopped { time_s, .. } = &outcome.end else { panic!("{formula}: {:?}", outcome.end) };
+        assert!((time_s - 4.0).abs() < 0.02, "{formula}: {:?}", outcome.end);
+    }
 }

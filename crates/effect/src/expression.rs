@@ -1,0 +1,140 @@
+//! A force or a power as a formula of the situation, for what has no effect of its own.
+//!
+//! R = f(…), F = f(…), P = f(…)        each a text in the notation of `expression/parser.rs`
+//!
+//! Source: the author of the scenario; empirical. Notation and units: `expression/names.rs` and `expression/units.rs`.
+//! A formula remembers nothing and does not know the force at the wheels. Units are checked when it is read: sums and
+//! comparisons need one unit, functions pure numbers, and the whole has to come out in newtons or watts.
+//! Where a formula has no finite value the action has none either, nothing is clamped: a force stops the simulation, a
+//! power leaves the drive without any.
+//! Fingerprint: whatever it says.
+
+mod constants;
+mod dimension;
+mod fault;
+mod lexer;
+mod names;
+mod parser;
+mod program;
+#[cfg(test)]
+mod tests;
+mod units;
+
+use crate::series::refuse;
+use constants::Constants;
+use dimension::Dimension;
+use fault::Fault;
+use headland_plugin::{Action, Card, Effect, Plugin, Refusal, Situation, parameter};
+use headland_units::parse_unit;
+use parser::compile;
+use program::Program;
+use serde::Deserialize;
+use std::path::Path;
+
+/// Formulas of up to four of the things that an effect can do.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Expression {
+    #[serde(default)]
+    resistance: Option<String>,
+    #[serde(default)]
+    force: Option<String>,
+    #[serde(default)]
+    auxiliary_power: Option<String>,
+    #[serde(default)]
+    shaft_power: Option<String>,
+    #[serde(default)]
+    constants: Constants,
+    #[serde(skip)]
+    resistance_n: Option<Program>,
+    #[serde(skip)]
+    force_n: Option<Program>,
+    #[serde(skip)]
+    auxiliary_power_w: Option<Program>,
+    #[serde(skip)]
+    shaft_power_w: Option<Program>,
+}
+
+impl Plugin for Expression {
+    const CARD: Card = Card {
+        name: "expression",
+        about: "a force or a power as a formula of the situation",
+        equation: "R, F, P = + - * / ^ < <= > >= == != ( ) min max clamp abs sign sqrt pow exp ln log10 sin cos tanh of \
+                   v [m/s] x [m] t [s] heading [rad] kappa [1/m] slope [1] elevation [m] temperature [°C] m [kg] \
+                   g [m/s²] N [N] rho [kg/m³] area [m²] coasting [1] braking [1] headwind [m/s] crosswind [m/s] and \
+                   constants",
+        source: "the author of the scenario; empirical",
+        validity: "units have to fit; comparisons are 1 or 0; slope is the sine, N = m g cos θ the normal load, the cross \
+                   wind comes from the right; a force that is not finite stops the simulation, \
+                   such a power leaves the drive without any",
+        parameters: &[
+            parameter(
+                "resistance",
+                "N (formula)",
+                "against the motion, R; each formula may be left out, not all",
+            ),
+            parameter("force", "N (formula)", "forward, F"),
+            parameter("auxiliary_power", "W (formula)", "electric power that is taken beside the drive, P"),
+            parameter(
+                "shaft_power",
+                "W (formula)",
+                "mechanical power that is taken from the engine or motor, P",
+            ),
+            parameter(
+                "constants",
+                "{name: number} (the end of a name says the unit)",
+                "numbers of the formulas",
+            ),
+        ],
+    };
+
+    fn settle(&mut self, _: &Path) -> Result<(), Refusal> {
+        let constants = self.constants.checked()?;
+        let mut used = vec![false; constants.len()];
+        let formulas = [
+            ("resistance", &self.resistance, "N", &mut self.resistance_n),
+            ("force", &self.force, "N", &mut self.force_n),
+            ("auxiliary_power", &self.auxiliary_power, "W", &mut self.auxiliary_power_w),
+            ("shaft_power", &self.shaft_power, "W", &mut self.shaft_power_w),
+        ];
+        let mut given = false;
+        for (name, text, unit, program) in formulas {
+            let Some(text) = text else { continue };
+            given = true;
+            let compiled = compile(text, &constants).map_err(|fault| fault.refusal(name, text))?;
+            let wanted = parse_unit(unit).map_or(Dimension::NONE, |unit| Dimension::of(&unit));
+            if compiled.dimension != wanted && !compiled.any_unit {
+                let found = format!("\"{}\" in {}", Fault::quote(text, 0..text.len()), compiled.dimension);
+                return Err(refuse(name, &found, &format!("a formula in {unit}")));
+            }
+            for (used, uses) in used.iter_mut().zip(compiled.uses) {
+                *used |= uses;
+            }
+            *program = Some(compiled.program);
+        }
+        if !given {
+            let expected = "at least one of `resistance`, `force`, `auxiliary_power`, `shaft_power`";
+            return Err(refuse("expression", "without a formula", expected));
+        }
+        match constants.iter().zip(used).find(|(_, used)| !used) {
+            Some((unused, _)) => {
+                let parameter = format!("constants.{}", unused.name);
+                Err(refuse(&parameter, "in no formula", "a constant that a formula names"))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+impl Effect for Expression {
+    fn act(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Action {
+        let value = |program: &Option<Program>| program.as_ref().map_or(0.0, |program| program.value(at));
+        Action {
+            resistance_n: value(&self.resistance_n),
+            force_n: value(&self.force_n),
+            auxiliary_power_w: value(&self.auxiliary_power_w),
+            shaft_power_w: value(&self.shaft_power_w),
+            ..Action::default()
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! Formulas by hand, and what is refused.
+
+use super::Expression;
+use super::names::{FUNCTIONS, VARIABLES};
+use crate::testing::{act, at_10_m_s, build, same};
+use headland_plugin::{Air, Place, Plugin, Situation};
+
+/// Every variable has a value of its own, so that none can be taken for another.
+fn situation() -> Situation {
+    Situation {
+        time_s: 50.0,
+        position_m: 120.0,
+        speed_m_s: 10.0,
+        mass_kg: 2000.0,
+        gravity_m_s2: 9.81,
+        place: Place {
+            elevation_m: 300.0,
+            sin_slope: 0.6,
+            heading_rad: 0.5,
+            curvature_per_m: 0.02,
+            ..Place::default()
+        },
+        air: Air { density_kg_m3: 1.2, wind_speed_m_s: 4.0, wind_from_rad: 1.5, temperature_c: -5.0 },
+        drag_area_m2: 3.0,
+        coasting: true,
+        braking: false,
+        ..Situation::default()
+    }
+}
+
+fn force_n(text: &str, constants: &str) -> f64 {
+    act::<Expression>(
+        &format!("(force: \"{text}\", constants: {{\"one_n\": 1.0, {constants}}})"),
+        &situation(),
+    )
+    .force_n
+}
+
+fn refused(text: &str) -> String {
+    let constants = "{\"k_n_s_m\": 2.0, \"f_n\": 3.0, \"n\": 2.0, \"v0_m_s\": 5.0}";
+    build::<Expression>(&format!("(resistance: \"{text}\", constants: {constants})")).unwrap_err()
+}
+
+#[test]
+fn every_variable_is_what_its_name_says() {
+    let expected =
+        [10.0, 120.0, 50.0, 0.5, 0.02, 0.6, 300.0, -5.0, 2000.0, 9.81, 15_696.0, 1.2, 3.0, 1.0, 0.0];
+    let expected = expected.into_iter().chain([4.0 * 1f64.cos(), 4.0 * 1f64.sin()]);
+    assert_eq!(VARIABLES.len(), expected.clone().count());
+    for (variable, expected) in VARIABLES.iter().zip(expected) {
+        let value = (variable.of)(&situation());
+        assert!((value - expected).abs() < 1e-12, "{}: {value}", variable.name);
+    }
+}
+
+/// The card is where users find the names.
+#[test]
+fn the_card_tells_every_name_and_unit() {
+    let told: Vec<&str> = Expression::CARD.equation.split_whitespace().collect();
+    for variable in &VARIABLES {
+        let unit = format!("[{}]", variable.unit);
+        assert!(told.windows(2).any(|pair| pair == [variable.name, unit.as_str()]), "{}", variable.name);
+    }
+    for function in &FUNCTIONS {
+        assert!(told.contains(&function.name), "{}", function.name);
+    }
+}
+
+#[test]
+fn operators_bind_as_in_mathematics() {
+    for (text, expected) in [
+        ("2 + 3 * 4", 14.0),
+        ("(2 + 3) * 4", 20.0),
+        ("2 - 3 - 4", -5.0),
+        ("24 / 4 / 3", 2.0),
+        ("-2^2", -4.0),
+        ("2^3^2", 512.0),
+        ("2^-1", 0.5),
+        ("2 * -3", -6.0),
+        ("--3", 3.0),
+        ("1 + 2 < 2 * 2", 1.0),
+        ("(1 > 2) + (2 >= 2) + (1 <= 0) + (1 == 1) + (1 != 1)", 2.0),
+        (".5e1 − 1", 4.0),
+    ] {
+        assert_eq!(force_n(&format!("one_n * ({text})"), ""), expected, "{text}");
+    }
+}
+
+#[test]
+fn functions_have_their_values() {
+    for (text, expected) in [
+        ("min(v / v1_m_s, 3)", 3.0),
+        ("max(v / v1_m_s, 3)", 5.0),
+        ("clamp(slope, 0, 0.5)", 0.5),
+        ("clamp(slope, 0.7, 1)", 0.7),
+        ("abs(-slope)", 0.6),
+        ("sign(-slope) + 2 * sign(v - v)", -1.0),
+        ("sqrt(v / v1_m_s - 1)", 2.0),
+        ("pow(v / v1_m_s, 3)", 125.0),
+        ("exp(slope)", 1.822_118_800_390_509),
+        ("ln(1 + slope)", 0.470_003_629_245_735_5),
+        ("log10(100 + slope - slope)", 2.0),
+        ("sin(heading)", 0.479_425_538_604_203),
+        ("cos(heading)", 0.877_582_561_890_372_8),
+        ("tanh(slope)", 0.537_049_566_998_035_3),
+    ] {
+        // What is not used is refused, so each text uses it.
+        let value = force_n(&format!("one_n * ({text}) + 0 * one_n * (v / v1_m_s)"), "\"v1_m_s\": 2.0");
+        assert!(same(value, expected), "{text}: {value}");
+    }
+}
+
+/// 0.02 · 20 000 N · (1 + (10 / 5)²) = 2000 N against 150 N · (10 − 4) / (1 m/s) = 900 N; 30 W/K · 25 K; 2 kW in neutral.
+#[test]
+fn each_formula_acts_where_it_is_said_to() {
+    let action = act::<Expression>(
+        "(resistance: \"c * N * (1 + (v / v0_m_s)^2)\", force: \"k_n_s_m * max(0, v - v1_m_s)\", \
+          auxiliary_power: \"30 * one_w * (t0_c - temperature) / one_k\", shaft_power: \"p_w * (1 - coasting)\", \
+          constants: {\"c\": 0.02, \"v0_m_s\": 5.0, \"k_n_s_m\": 150.0, \"v1_m_s\": 4.0, \"one_w\": 1, \
+                      \"t0_c\": 30.0, \"one_k\": 1.0, \"p_w\": 2e3})",
+        &at_10_m_s(),
+    );
+    assert!(same(action.resistance_n, 2000.0) && same(action.force_n, 900.0), "{action:?}");
+    assert!(same(action.auxiliary_power_w, 750.0) && same(action.shaft_power_w, 2000.0), "{action:?}");
+}
+
+#[test]
+fn constants_are_in_the_units_of_their_names() {
+    assert!(same(force_n("one_n * sin(a_deg)", "\"a_deg\": 30.0"), 0.5));
+    assert!(same(force_n("one_n * v^0.5 * w_m_s^0.5 / u_m_s", "\"w_m_s\": 40.0, \"u_m_s\": 1.0"), 20.0));
+}
+
+#[test]
+fn syntax_errors_name_the_character_and_what_was_expected() {
+    for (text, expected) in [
+        ("f_n * + v", "`+` at character 7, expected a number, a name or `(`"),
+        ("f_n *", "the end of the text at character 6, expected a number, a name or `(`"),
+        ("", "the end of the text at character 1"),
+        ("2 f_n", "`f_n` at character 3, expected an operator or the end"),
+        ("(f_n", "the end of the text at character 5, expected an operator or `)`"),
+        ("f_n)", "`)` at character 4, expected an operator or the end"),
+        ("1 < 2 < 3", "`<` at character 7, expected an operator or the end"),
+        ("f_n ; 2", "`;` at character 5"),
+        ("min(f_n)", "`)` at character 8, expected an operator or `,`; `min` has 2 arguments"),
+        ("abs(f_n, 2)", "`,` at character 8, expected an operator or `)`; `abs` has 1 argument"),
+        ("abs * 2", "`*` at character 5, expected `(` behind the function `abs`"),
+        ("f_n * ρρ + 2", "`ρρ` at character 7, expected a constant of `constants` or one of v x"),
+        ("f_n * temperatur", "is `temperature` meant?"),
+        ("f_n * ln(-1)", "`ln(-1)` at character 7, which is NaN, expected a finite number"),
+        ("f_n / 0", "`f_n / 0` at character 1, which is inf"),
+    ] {
+        let message = refused(text);
+        assert!(message.contains("`resistance` is \"") && message.contains(expected), "{text}: {message}");
+    }
+}
+
+#[test]
+fn units_that_do_not_fit_are_refused() {
+    for (text, expected) in [
+        ("k_n_s_m * v * v", "in W, expected a formula in N"),
+        ("n * slope", "in a pure number, expected a formula in N"),
+        ("f_n + k_n_s_m", "`k_n_s_m` at character 7, which is in N s/m, expected N as in `f_n` beside it"),
+        ("f_n + 1", "`1` at character 7, which is a pure number, expected N"),
+        ("f_n * (v > 3)", "`3` at character 12, which is a pure number, expected m/s"),
+        ("f_n * exp(v)", "`v` at character 11, which is in m/s, expected a pure number, as `exp` wants"),
+        ("f_n * n^v", "`v` at character 9, which is in m/s, expected a pure number as the exponent"),
+        ("k_n_s_m * v^n", "`n` at character 13, expected a written number as the exponent of what is in m/s"),
+        ("max(0, f_n, v)", "`,` at character 11"),
+        ("clamp(0, f_n, v)", "`v` at character 15, which is in m/s, expected N"),
+        ("sqrt(f_n)", "in m^0.5 kg^0.5 s^-1, expected a formula in N"),
+    ] {
+        let message = refused(text);
+        assert!(message.contains("`resistance` is \"") && message.contains(expected), "{text}: {message}");
+    }
+}
+
+#[test]
+fn what_is_missing_or_needless_is_refused() {
+    let message = |parameters: &str| build::<Expression>(parameters).unwrap_err();
+    assert!(message("()").contains("expected at least one of `resistance`"));
+    assert!(message("(force: \"0\", constants: {\"c\": 1.0})").contains("`constants.c` is in no formula"));
+    assert!(message("(force: \"0\", constants: {\"v\": 1.0})").contains("the name of a variable"));
+    assert!(message("(force: \"c\", constants: {\"c\": 1, \"c\": 2})").contains("given twice"));
+    assert!(message("(force: \"0\", constants: {\"2c\": 1.0})").contains("no digit first"));
+    assert!(message("(force: \"f_n\", constants: {\"f_n\": inf})").contains("`constants.f_n` is inf"));
+    assert!(message("(drag: \"0\")").contains("drag"));
+}
+
+/// A hostile text must not exhaust the stack of the program that reads it.
+#[test]
+fn texts_without_measure_are_refused() {
+    for piece in ["(", "-", "2^", "abs(", "1+("] {
+        assert!(refused(&piece.repeat(100_000)).contains("deep"), "{piece}");
+    }
+    let long = format!("f_n * (k_n_s_m * v0_m_s / f_n + n{})", " + slope".repeat(10_000));
+    let constants = "{\"k_n_s_m\": 2.0, \"f_n\": 3.0, \"n\": 2.0, \"v0_m_s\": 5.0}";
+    assert!(build::<Expression>(&format!("(force: \"{long}\", constants: {constants})")).is_ok());
+}
+
+/// The temperature is not known, and the root of a negative number is none: nothing is made up in their place.
+#[test]
+fn a_value_that_does_not_exist_is_not_made_up() {
+    let mut at = situation();
+    at.air.temperature_c = f64::NAN;
+    let cold = "(force: \"f_n * (temperature < t_c)\", constants: {\"f_n\": 1.0, \"t_c\": 0.0})";
+    assert!(act::<Expression>(cold, &at).force_n.is_nan());
+    assert!(force_n("one_n * sqrt(slope - 1)", "").is_nan());
+    assert_eq!(force_n("one_n / (slope - slope)", ""), f64::INFINITY);
+}

@@ -1,0 +1,263 @@
+//! A case: what is hidden in it, its runs as the plant drives them, its logs as the sensors see them.
+
+use crate::dice::Dice;
+use crate::error::ConcealError;
+use crate::family::{Family, Needs};
+use crate::hidden::{Law, Spell, Told, ask, draw, listed_of, pair_of, told, unlisted_of};
+use crate::plan::Plan;
+use crate::plant::{self, Begin, Sample};
+use crate::sensor::{Artefact, measure};
+use crate::truth::{Cause, SCHEMA, Truth};
+use crate::write;
+use headland_trace::{Origin, Run, Trace};
+use std::path::Path;
+
+/// What is hidden in a case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// One listed cause.
+    Single,
+    /// Two listed causes.
+    Two,
+    /// One cause that no list holds.
+    Unlisted,
+    /// None: the nominal parameters are wrong within their spread.
+    Empty,
+    /// A fault of a sensor.
+    Artefact,
+}
+
+impl Kind {
+    /// As the truth has it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Single => "single",
+            Self::Two => "two",
+            Self::Unlisted => "unlisted",
+            Self::Empty => "empty",
+            Self::Artefact => "artefact",
+        }
+    }
+}
+
+/// Of twenty cases eight hide one listed cause, three two, three an unlisted one; four hide none, two a fault.
+pub fn kind_of(case: usize) -> (Kind, usize) {
+    use Kind::{Artefact, Empty, Single, Two, Unlisted};
+    const CYCLE: [Kind; 20] = [
+        Single, Empty, Single, Two, Single, Unlisted, Artefact, Single, Empty, Two, Single, Unlisted, Single,
+        Empty, Single, Artefact, Two, Single, Unlisted, Empty,
+    ];
+    let kind = CYCLE[case % CYCLE.len()];
+    let a_cycle = CYCLE.iter().filter(|other| **other == kind).count();
+    let before = CYCLE[..case % CYCLE.len()].iter().filter(|other| **other == kind).count();
+    (kind, case / CYCLE.len() * a_cycle + before)
+}
+
+/// A case, driven and measured.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// The plan.
+    pub plan: Plan,
+    /// What is in the logs.
+    pub logs: Vec<Run>,
+    /// What was hidden along each run, with true speed and position.
+    pub along: Vec<Run>,
+    /// The truth.
+    pub truth: Truth,
+}
+
+/// Makes a case of a set. `exact` states every nominal parameter as it is.
+///
+/// # Errors
+/// [`ConcealError::Trace`] where the logs do not come together: a bug.
+pub fn generate(seed: u64, case: usize, exact: bool) -> Result<Case, ConcealError> {
+    let (kind, number) = kind_of(case);
+    // The order in which laws are dealt is that of the set; all else is the case's own.
+    let mut deal = Dice::new(seed, 0);
+    let mut dice = Dice::new(seed, 1 + case as u64);
+    let (listed, others) = (listed_of(&mut deal), unlisted_of(&mut deal));
+    let families = Family::ALL;
+    let (family, names): (Family, Vec<&'static str>) = match kind {
+        Kind::Single => {
+            let one = listed[number % listed.len()];
+            (one.family, vec![one.law])
+        }
+        Kind::Two => {
+            let family = families[number % families.len()];
+            (family, pair_of(family, &mut dice).to_vec())
+        }
+        Kind::Unlisted => {
+            let one = others[number % others.len()];
+            (one.family, vec![one.law])
+        }
+        Kind::Empty | Kind::Artefact => (families[number % families.len()], Vec::new()),
+    };
+    let mut needs = Needs { exact, ..Needs::default() };
+    for name in &names {
+        ask(name, &mut needs, &mut dice);
+    }
+    let fault = (kind == Kind::Artefact).then(|| write::faults::choose(family, number, &mut needs));
+    let plan = family.plan(&needs, &mut dice);
+    let laws: Vec<Law> = names.iter().map(|name| draw(name, &plan, &mut dice)).collect();
+    let faults: Vec<Artefact> =
+        fault.into_iter().map(|id| write::faults::draw(id, &plan, &mut dice)).collect();
+    assemble((seed, case, kind), plan, &laws, &names, &faults, &mut dice)
+}
+
+fn assemble(
+    (seed, case, kind): (u64, usize, Kind),
+    plan: Plan,
+    laws: &[Law],
+    names: &[&'static str],
+    faults: &[Artefact],
+    dice: &mut Dice,
+) -> Result<Case, ConcealError> {
+    let (mut logs, mut along) = (Vec::new(), Vec::new());
+    let columns: Vec<String> = columns(laws);
+    let mut squares = vec![(0.0, 0usize); laws.len()];
+    let mut faulty = vec![(0.0, 0usize); faults.len()];
+    for (index, run) in plan.runs.iter().enumerate() {
+        let begin = Begin {
+            position_m: run.position_m,
+            speed_m_s: run.speed_m_s,
+            before_s: plan.before_s,
+            reversed: run.reversed,
+            run: index,
+            passes_before: index as f64,
+            extra_mass_kg: run.ballast_kg,
+            air_c: run.air_c,
+        };
+        let samples = plant::drive(&plan.vehicle, &plan.course, laws, &run.goal, &begin, run.stop);
+        let last_s = samples.last().map_or(0.0, |sample| sample.time_s);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few thousand rows")]
+        let rows = (last_s * plan.rate_hz).floor() as usize + 1;
+        let rows_s: Vec<f64> = (0..rows).map(|row| row as f64 / plan.rate_hz).collect();
+        let mut log = Trace::new(rows_s.clone())?;
+        let mut truth = Trace::new(rows_s.clone())?;
+        let at = |pick: &dyn Fn(&Sample) -> f64| -> Vec<f64> {
+            rows_s.iter().map(|row_s| pick(nearest(&samples, *row_s))).collect()
+        };
+        truth.push("speed_m_s", at(&|sample| sample.speed_m_s), Origin::Measured)?;
+        truth.push("position_m", at(&|sample| sample.position_m), Origin::Measured)?;
+        for (law, column) in columns.iter().enumerate() {
+            let values = at(&|sample| sample.hidden[law]);
+            if !run.held_out {
+                squares[law].0 += values.iter().map(|value| value * value).sum::<f64>();
+                squares[law].1 += values.len();
+            }
+            truth.push(column.clone(), values, Origin::Measured)?;
+        }
+        for channel in &plan.channels {
+            let own = dice.fork();
+            let mine: Vec<&Artefact> =
+                faults.iter().filter(|fault| fault.channels.contains(&channel.name)).collect();
+            let log_of = |faults: &[&Artefact]| {
+                measure(&samples, channel.pick, &channel.sensor, faults, &rows_s, index, own.clone())
+            };
+            let values = log_of(&mine);
+            if !mine.is_empty() {
+                let sound = log_of(&[]);
+                let error: Vec<f64> = values.iter().zip(&sound).map(|(faulty, sound)| faulty - sound).collect();
+                let lost = |error: &f64| if error.is_finite() { error * error } else { 0.0 };
+                faulty[0].0 += error.iter().map(lost).sum::<f64>();
+                faulty[0].1 += error.len();
+                truth.push(format!("{}_error", channel.name), error, Origin::Measured)?;
+            }
+            log.push(channel.name, values, Origin::Measured)?;
+        }
+        logs.push(Run { id: run.id.clone(), trace: log });
+        along.push(Run { id: run.id.clone(), trace: truth });
+    }
+    let rms = |(sum, count): (f64, usize)| (sum / count.max(1) as f64).sqrt();
+    let mut hidden: Vec<Cause> = Vec::new();
+    for (index, law) in laws.iter().enumerate() {
+        let rms = rms(squares[index]);
+        let noise = match unit(law) {
+            "w" => plan.power_noise_w(),
+            "m_s" => plan.second_noise("speed_m_s").hypot(plan.second_noise("wheel_speed_m_s")),
+            _ => plan.force_noise_n(),
+        };
+        hidden.push(Cause {
+            id: law.id().to_owned(),
+            law: names[index].to_owned(),
+            class: "physics".to_owned(),
+            parameters: law.told(),
+            column: columns[index].clone(),
+            rms,
+            strength: rms / noise,
+        });
+    }
+    for (index, fault) in faults.iter().enumerate() {
+        let channel = fault.channels[0];
+        let rms = rms(faulty[index]);
+        hidden.push(Cause {
+            id: fault.id.to_owned(),
+            law: format!("{} of {channel}", fault.id),
+            class: "artefact".to_owned(),
+            parameters: fault.told.clone(),
+            column: format!("{channel}_error"),
+            rms,
+            strength: rms / plan.second_noise(channel).max(1e-12),
+        });
+    }
+    let also_true =
+        if plan.has("specific_force_m_s2") { vec!["accelerometer_tilt".to_owned()] } else { Vec::new() };
+    let truth = Truth {
+        schema: SCHEMA.to_owned(),
+        seed,
+        case,
+        family: plan.family.to_owned(),
+        kind: kind.name().to_owned(),
+        hidden,
+        also_true,
+        nominal: plan.nominal.priors.clone(),
+        speed_noise_m_s: plan.sensor("speed_m_s").map_or(0.0, |sensor| sensor.white.hypot(sensor.drift)),
+        force_noise_n: plan.force_noise_n(),
+        power_noise_w: plan.power_noise_w(),
+        held_out: plan.runs.iter().filter(|run| run.held_out).map(|run| run.id.clone()).collect(),
+    };
+    Ok(Case { plan, logs, along, truth })
+}
+
+fn unit(law: &Law) -> &'static str {
+    law.amount(&crate::hidden::Now::default(), 0.0).0
+}
+
+/// A column for each law: its id and unit, numbered where two have one id.
+fn columns(laws: &[Law]) -> Vec<String> {
+    let mut columns: Vec<String> = Vec::new();
+    for law in laws {
+        let name = format!("{}_{}", law.id(), unit(law));
+        columns.push(if columns.contains(&name) { format!("{name}_2") } else { name });
+    }
+    columns
+}
+
+fn nearest(samples: &[Sample], at_s: f64) -> &Sample {
+    let index = samples.partition_point(|sample| sample.time_s < at_s - 0.5 * plant::STEP_S);
+    &samples[index.min(samples.len() - 1)]
+}
+
+impl Case {
+    /// Writes the case into a folder, which is made.
+    ///
+    /// # Errors
+    /// [`ConcealError::File`], [`ConcealError::Json`] or [`ConcealError::Trace`].
+    pub fn write(&self, folder: &Path) -> Result<(), ConcealError> {
+        write::case(self, folder)
+    }
+}
+
+/// A fault's parameter.
+pub(crate) fn amount(name: &str, value: f64, unit: &str) -> Vec<Told> {
+    vec![told(name, value, unit)]
+}
+
+/// A spell in every second run.
+pub(crate) fn every_second(runs: usize, mut of: impl FnMut(usize) -> (f64, f64, f64)) -> Vec<Spell> {
+    let spell = |run: usize| {
+        let (from_s, to_s, amount) = of(run);
+        Spell { run, from_s, to_s, amount }
+    };
+    (0..runs).step_by(2).map(spell).collect()
+}

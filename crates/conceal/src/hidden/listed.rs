@@ -1,0 +1,307 @@
+//! The laws of the causes that the contract lists, written anew for the plant.
+//!
+//! Sources are those of the textbook quantities: the drag equation, Newton's law on an incline, Coulomb friction, slip
+//! in proportion to pull (Wong, *Theory of Ground Vehicles* (2008)), warm-up as one time constant.
+
+use super::unlisted::Unlisted;
+use super::{Now, Push, Told, told};
+
+/// A spell of one run: index of the run, begin and end [s], and how much.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spell {
+    /// Index of the run.
+    pub run: usize,
+    /// Begin [s].
+    pub from_s: f64,
+    /// End [s].
+    pub to_s: f64,
+    /// Force [N] or power [W].
+    pub amount: f64,
+}
+
+/// One hidden cause.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, reason = "fields are named as the parameters are told")]
+pub enum Law {
+    Wind { speed_m_s: f64, from_rad: f64 },
+    /// Waves of the grade: amplitude, wavelength [m], phase.
+    Grade { waves: Vec<(f64, f64, f64)> },
+    GradeConstant { grade: f64 },
+    RotatingInertia { rotating_mass_kg: f64 },
+    Mass { extra_mass_kg: f64 },
+    PayloadChange { from_s: f64, to_s: f64, mass_kg: f64 },
+    AerodynamicDrag { extra_area_m2: f64 },
+    RollingResistance { coefficient: f64 },
+    RollingSpeedLaw { linear: f64, reference_speed_m_s: f64 },
+    TyreWarmUp { cold_coefficient: f64, time_constant_s: f64 },
+    TyreCold { coefficient_per_k: f64, reference_temperature_c: f64 },
+    /// Patches: begin, end [m], coefficient; each axle meets them by itself.
+    SoftGround { patches: Vec<(f64, f64, f64)>, half_wheelbase_m: f64 },
+    Multipass { coefficient: f64, factor: f64 },
+    NeutralDrag { force_n: f64, viscous_n_s_m: f64 },
+    DrivelineTemperature { cold_force_n: f64, cold_viscous_n_s_m: f64, time_constant_s: f64 },
+    BrakeDrag { force_n: f64 },
+    Braking { spells: Vec<Spell> },
+    CorneringDrag { cornering_stiffness_n_per_rad: f64 },
+    LoadDependence { coefficient: f64, exponent: f64, reference_mass_kg: f64 },
+    DrawbarLoad { force_n: f64, linear_n_s_m: f64, from_s: f64, to_s: f64 },
+    SpeedThreshold { force_n: f64, threshold_m_s: f64, width_m_s: f64 },
+    DrivelineEfficiency { loss: f64 },
+    VariatorLoss { loss: f64, node_m_s: f64 },
+    ShiftTransient { force_n: f64, speed_m_s: f64, width_m_s: f64 },
+    WheelSlip { coefficient: f64 },
+    AuxiliaryConstant { power_w: f64 },
+    AuxiliarySwitched { spells: Vec<Spell> },
+    AuxiliaryByCold { freezing_power_w: f64, balance_temperature_c: f64 },
+    BatteryResistance { resistance_ohm: f64 },
+    Other(Unlisted),
+}
+
+/// Time since the log began, none before [s].
+fn since(now: &Now) -> f64 {
+    now.time_s.max(0.0)
+}
+
+fn spell(spells: &[Spell], now: &Now) -> f64 {
+    let inside = |spell: &&Spell| spell.run == now.run && now.time_s >= spell.from_s && now.time_s < spell.to_s;
+    spells.iter().find(inside).map_or(0.0, |spell| spell.amount)
+}
+
+impl Law {
+    /// The contract's id, or `unlisted`.
+    pub fn id(&self) -> &'static str {
+        match self {
+            Self::Wind { .. } => "wind",
+            Self::Grade { .. } => "grade",
+            Self::GradeConstant { .. } => "grade_constant",
+            Self::RotatingInertia { .. } => "rotating_inertia",
+            Self::Mass { .. } => "mass",
+            Self::PayloadChange { .. } => "payload_change",
+            Self::AerodynamicDrag { .. } => "aerodynamic_drag",
+            Self::RollingResistance { .. } => "rolling_resistance",
+            Self::RollingSpeedLaw { .. } => "rolling_speed_law",
+            Self::TyreWarmUp { .. } | Self::TyreCold { .. } => "rolling_temperature",
+            Self::SoftGround { .. } => "soft_ground",
+            Self::Multipass { .. } => "multipass",
+            Self::NeutralDrag { .. } => "neutral_drag",
+            Self::DrivelineTemperature { .. } => "driveline_temperature",
+            Self::BrakeDrag { .. } => "brake_drag",
+            Self::Braking { .. } => "braking",
+            Self::CorneringDrag { .. } => "cornering_drag",
+            Self::LoadDependence { .. } => "load_dependence",
+            Self::DrawbarLoad { .. } => "drawbar_load",
+            Self::SpeedThreshold { .. } => "speed_threshold",
+            Self::DrivelineEfficiency { .. } => "driveline_efficiency",
+            Self::VariatorLoss { .. } => "variator_loss",
+            Self::ShiftTransient { .. } => "shift_transient",
+            Self::WheelSlip { .. } => "wheel_slip",
+            Self::AuxiliaryConstant { .. } | Self::AuxiliarySwitched { .. } | Self::AuxiliaryByCold { .. } => {
+                "auxiliary_power"
+            }
+            Self::BatteryResistance { .. } => "battery_resistance",
+            Self::Other(_) => "unlisted",
+        }
+    }
+
+    /// What it does to the plant.
+    pub fn push(&self, now: &Now) -> Push {
+        let force = |forward_n: f64| Push { forward_n, ..Push::default() };
+        let drag = |against_n: f64| force(-against_n);
+        let weight = now.mass_kg * now.gravity_m_s2;
+        let v = now.speed_m_s;
+        match self {
+            Self::Wind { speed_m_s, from_rad } => force(wind_n(now, *speed_m_s, *from_rad)),
+            Self::Grade { waves } => {
+                let wave = |(amplitude, length, phase): &(f64, f64, f64)| {
+                    amplitude * (std::f64::consts::TAU * now.position_m / length + phase).sin()
+                };
+                slope(now, waves.iter().map(wave).sum())
+            }
+            Self::GradeConstant { grade } => slope(now, *grade),
+            Self::RotatingInertia { rotating_mass_kg } => {
+                Push { turning_kg: *rotating_mass_kg, ..Push::default() }
+            }
+            Self::Mass { extra_mass_kg } => Push { mass_kg: *extra_mass_kg, ..Push::default() },
+            Self::PayloadChange { from_s, to_s, mass_kg } => {
+                let share = ((now.time_s - from_s) / (to_s - from_s)).clamp(0.0, 1.0);
+                Push { mass_kg: mass_kg * share, ..Push::default() }
+            }
+            Self::AerodynamicDrag { extra_area_m2 } => drag(0.5 * now.air_density_kg_m3 * extra_area_m2 * v * v),
+            Self::RollingResistance { coefficient } => drag(coefficient * weight),
+            Self::RollingSpeedLaw { linear, reference_speed_m_s } => {
+                drag(linear * weight * (v - reference_speed_m_s) / reference_speed_m_s)
+            }
+            Self::TyreWarmUp { cold_coefficient, time_constant_s } => {
+                drag(cold_coefficient * weight / (since(now) / time_constant_s).exp())
+            }
+            Self::TyreCold { coefficient_per_k, reference_temperature_c } => {
+                drag(coefficient_per_k * (reference_temperature_c - now.air_c) * weight)
+            }
+            Self::SoftGround { patches, half_wheelbase_m } => {
+                let under = |place: f64| -> f64 {
+                    patches.iter().filter(|(from, to, _)| place >= *from && place < *to).map(|patch| patch.2).sum()
+                };
+                let front = under(now.position_m + half_wheelbase_m);
+                let rear = under(now.position_m - half_wheelbase_m);
+                drag(0.5 * (front + rear) * weight)
+            }
+            Self::Multipass { coefficient, factor } => {
+                drag(coefficient * weight * ((now.passes_before * factor.ln()).exp() - 1.0))
+            }
+            Self::NeutralDrag { force_n, viscous_n_s_m } => {
+                drag(if now.coasting { force_n + viscous_n_s_m * v } else { 0.0 })
+            }
+            Self::DrivelineTemperature { cold_force_n, cold_viscous_n_s_m, time_constant_s } => {
+                drag((cold_force_n + cold_viscous_n_s_m * v) / (since(now) / time_constant_s).exp())
+            }
+            Self::BrakeDrag { force_n } => drag(*force_n),
+            Self::Braking { spells } => {
+                let force_n = spell(spells, now);
+                Push { forward_n: -force_n, braked: force_n > 0.0, ..Push::default() }
+            }
+            Self::CorneringDrag { cornering_stiffness_n_per_rad } => {
+                let side_n = now.mass_kg * now.curvature_per_m * v * v;
+                drag(side_n * (side_n / cornering_stiffness_n_per_rad))
+            }
+            Self::LoadDependence { coefficient, exponent, reference_mass_kg } => {
+                let ratio = now.mass_kg / reference_mass_kg;
+                drag(coefficient * weight * (ratio.ln() * (exponent - 1.0)).exp_m1())
+            }
+            Self::DrawbarLoad { force_n, linear_n_s_m, from_s, to_s } => {
+                let lowered = now.time_s >= *from_s && now.time_s < *to_s;
+                drag(if lowered { force_n + linear_n_s_m * v } else { 0.0 })
+            }
+            Self::SpeedThreshold { force_n, threshold_m_s, width_m_s } => {
+                drag(force_n * ((v - threshold_m_s) / width_m_s).clamp(0.0, 1.0))
+            }
+            Self::DrivelineEfficiency { loss } => drag(loss * now.drive_n.abs()),
+            Self::VariatorLoss { loss, node_m_s } => {
+                let away = (1.0 - v / node_m_s).abs().min(1.0);
+                drag(loss * away * now.drive_n.abs())
+            }
+            Self::ShiftTransient { force_n, speed_m_s, width_m_s } => {
+                let away = (v - speed_m_s) / width_m_s;
+                drag(if now.coasting { 0.0 } else { force_n * (-0.5 * away * away).exp() })
+            }
+            Self::WheelSlip { coefficient } => Push { creep: *coefficient, ..Push::default() },
+            Self::AuxiliaryConstant { power_w } => Push { power_w: *power_w, ..Push::default() },
+            Self::AuxiliarySwitched { spells } => Push { power_w: spell(spells, now), ..Push::default() },
+            Self::AuxiliaryByCold { freezing_power_w, balance_temperature_c } => {
+                let share = ((balance_temperature_c - now.air_c) / balance_temperature_c).max(0.0);
+                Push { power_w: freezing_power_w * share, ..Push::default() }
+            }
+            Self::BatteryResistance { resistance_ohm } => {
+                Push { resistance_ohm: *resistance_ohm, ..Push::default() }
+            }
+            Self::Other(law) => force(law.forward_n(now)),
+        }
+    }
+
+    /// What it amounts to: unit and value; forces are net and forward, a power is taken, a speed is that of the wheels.
+    pub fn amount(&self, now: &Now, wheel_excess_m_s: f64) -> (&'static str, f64) {
+        let push = self.push(now);
+        let g = now.gravity_m_s2;
+        match self {
+            Self::WheelSlip { .. } => ("m_s", wheel_excess_m_s),
+            Self::AuxiliaryConstant { .. } | Self::AuxiliarySwitched { .. } | Self::AuxiliaryByCold { .. } => {
+                ("w", push.power_w)
+            }
+            Self::BatteryResistance { resistance_ohm } => ("w", resistance_ohm * now.current_a * now.current_a),
+            Self::Mass { .. } | Self::PayloadChange { .. } | Self::RotatingInertia { .. } => {
+                let inertia_n = (push.mass_kg + push.turning_kg) * now.acceleration_m_s2;
+                ("n", -inertia_n - push.mass_kg * g * now.ground_share)
+            }
+            Self::Grade { .. } | Self::GradeConstant { .. } => ("n", -now.mass_kg * g * push.sin_slope),
+            _ => ("n", push.forward_n),
+        }
+    }
+
+    /// Its parameters, where it has any that are numbers.
+    pub fn told(&self) -> Vec<Told> {
+        match self {
+            Self::Wind { speed_m_s, from_rad } => {
+                vec![told("speed_m_s", *speed_m_s, "m/s"), told("from_rad", *from_rad, "rad")]
+            }
+            Self::GradeConstant { grade } => vec![told("grade", *grade, "1")],
+            Self::RotatingInertia { rotating_mass_kg } => vec![told("rotating_mass_kg", *rotating_mass_kg, "kg")],
+            Self::Mass { extra_mass_kg } => vec![told("extra_mass_kg", *extra_mass_kg, "kg")],
+            Self::AerodynamicDrag { extra_area_m2 } => vec![told("extra_area_m2", *extra_area_m2, "m²")],
+            Self::RollingResistance { coefficient } => vec![told("coefficient", *coefficient, "1")],
+            Self::TyreWarmUp { cold_coefficient, time_constant_s } => vec![
+                told("cold_coefficient", *cold_coefficient, "1"),
+                told("time_constant_s", *time_constant_s, "s"),
+            ],
+            Self::TyreCold { coefficient_per_k, .. } => {
+                vec![told("coefficient_per_k", *coefficient_per_k, "1/K")]
+            }
+            Self::Multipass { coefficient, factor } => {
+                vec![told("coefficient", *coefficient, "1"), told("factor", *factor, "1")]
+            }
+            Self::NeutralDrag { force_n, viscous_n_s_m } => {
+                vec![told("force_n", *force_n, "N"), told("viscous_n_s_m", *viscous_n_s_m, "N s/m")]
+            }
+            Self::DrivelineTemperature { cold_force_n, cold_viscous_n_s_m, time_constant_s } => vec![
+                told("cold_force_n", *cold_force_n, "N"),
+                told("cold_viscous_n_s_m", *cold_viscous_n_s_m, "N s/m"),
+                told("time_constant_s", *time_constant_s, "s"),
+            ],
+            Self::BrakeDrag { force_n } => vec![told("force_n", *force_n, "N")],
+            Self::CorneringDrag { cornering_stiffness_n_per_rad } => {
+                vec![told("cornering_stiffness_n_per_rad", *cornering_stiffness_n_per_rad, "N/rad")]
+            }
+            Self::LoadDependence { exponent, .. } => vec![told("exponent", *exponent, "1")],
+            Self::DrawbarLoad { force_n, linear_n_s_m, from_s, to_s } => vec![
+                told("force_n", *force_n, "N"),
+                told("linear_n_s_m", *linear_n_s_m, "N s/m"),
+                told("from_s", *from_s, "s"),
+                told("to_s", *to_s, "s"),
+            ],
+            Self::SpeedThreshold { force_n, threshold_m_s, width_m_s } => vec![
+                told("force_n", *force_n, "N"),
+                told("threshold_m_s", *threshold_m_s, "m/s"),
+                told("width_m_s", *width_m_s, "m/s"),
+            ],
+            Self::DrivelineEfficiency { loss } => vec![told("loss", *loss, "1")],
+            Self::VariatorLoss { loss, node_m_s } => {
+                vec![told("loss", *loss, "1"), told("node_speed_m_s", *node_m_s, "m/s")]
+            }
+            Self::ShiftTransient { force_n, speed_m_s, width_m_s } => vec![
+                told("force_n", *force_n, "N"),
+                told("speed_m_s", *speed_m_s, "m/s"),
+                told("width_m_s", *width_m_s, "m/s"),
+            ],
+            Self::WheelSlip { coefficient } => vec![told("coefficient", *coefficient, "1")],
+            Self::AuxiliaryConstant { power_w } => vec![told("power_w", *power_w, "W")],
+            Self::AuxiliaryByCold { freezing_power_w, balance_temperature_c } => vec![
+                told("freezing_power_w", *freezing_power_w, "W"),
+                told("balance_temperature_c", *balance_temperature_c, "°C"),
+            ],
+            Self::BatteryResistance { resistance_ohm } => vec![told("resistance_ohm", *resistance_ohm, "ohm")],
+            Self::Other(law) => law.told(),
+            // The speed law's parameters move with the speed they refer to; the rest are functions of place or time.
+            Self::RollingSpeedLaw { .. }
+            | Self::Grade { .. }
+            | Self::PayloadChange { .. }
+            | Self::SoftGround { .. }
+            | Self::Braking { .. }
+            | Self::AuxiliarySwitched { .. } => Vec::new(),
+        }
+    }
+}
+
+/// Force of moving air minus that of still air, from vectors in north and east.
+fn wind_n(now: &Now, speed_m_s: f64, from_rad: f64) -> f64 {
+    let way = [now.heading_rad.cos(), now.heading_rad.sin()];
+    let met: [f64; 2] = [
+        now.speed_m_s * way[0] + speed_m_s * from_rad.cos(),
+        now.speed_m_s * way[1] + speed_m_s * from_rad.sin(),
+    ];
+    let pressure = 0.5 * now.air_density_kg_m3 * now.drag_area_m2 * met[0].hypot(met[1]);
+    let moving = pressure * (met[0] * way[0] + met[1] * way[1]);
+    0.5 * now.air_density_kg_m3 * now.drag_area_m2 * now.speed_m_s * now.speed_m_s - moving
+}
+
+fn slope(now: &Now, grade: f64) -> Push {
+    let uphill = if now.reversed { -grade } else { grade };
+    Push { sin_slope: uphill.atan().sin(), ..Push::default() }
+}

@@ -1,0 +1,31 @@
+//! Synthetic recordings with concealed causes, and the score of a diagnosis on them.
+//!
+//! The plant is another formulation than the simulator that is judged: it is integrated at 1 kHz, its wheels turn and
+//! creep, its body pitches on its suspension, and its sensors lag, hold, quantise and drift. It shares no code with the
+//! candidates of the diagnosis, which this crate does not know.
+//!
+//! A case is a folder: `scenario.ron` (the nominal scenario, somewhat wrong within the spread that it states),
+//! `recording.ron` with its logs, and `truth.json` with `truth.parquet`, which only the scorer opens.
+
+#![allow(clippy::suboptimal_flops, reason = "equations are written as in their sources")]
+
+mod case;
+mod course;
+mod dice;
+mod error;
+pub mod family;
+pub mod hidden;
+mod plan;
+pub mod plant;
+pub mod score;
+mod sensor;
+mod truth;
+mod write;
+
+pub use case::{Case, Kind, generate, kind_of};
+pub use course::{Bend, Course};
+pub use dice::Dice;
+pub use error::ConcealError;
+pub use plan::{Channel, Nominal, Plan, RunPlan};
+pub use sensor::{Artefact, Sensor};
+pub use truth::{Cause, Prior, Truth};

@@ -1,0 +1,101 @@
+//! The program `conceal`: makes concealed cases, and scores a diagnosis on them.
+
+use clap::{Parser, Subcommand};
+use headland_conceal::{ConcealError, generate, score};
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(Debug, Parser)]
+#[command(name = "conceal", about = "Makes recordings with concealed causes, and scores a diagnosis on them")]
+struct Arguments {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Debug, Subcommand)]
+enum Task {
+    /// Make cases: a folder each, with scenario, recording and truth
+    Generate {
+        /// How many
+        #[arg(long, default_value_t = 60)]
+        cases: usize,
+        /// Seed of the set
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        /// Number of the first case
+        #[arg(long, default_value_t = 0)]
+        first: usize,
+        /// State every nominal parameter as it is: to test the plant, not a diagnosis
+        #[arg(long)]
+        exact: bool,
+        /// Where the cases are put
+        #[arg(long)]
+        out: PathBuf,
+    },
+    /// Diagnose every case that has no diagnosis yet, and write the score
+    Score {
+        /// The cases
+        folder: PathBuf,
+        /// The program under test
+        #[arg(long, default_value = "target/release/headland")]
+        program: PathBuf,
+        /// Leave the true cause out of the library: what is claimed instead?
+        #[arg(long)]
+        without_truth: bool,
+        /// Score what is there and run nothing
+        #[arg(long)]
+        no_run: bool,
+        /// The table, as Markdown
+        #[arg(long)]
+        markdown: Option<PathBuf>,
+    },
+}
+
+fn main() -> ExitCode {
+    match run(Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            let _ = writeln!(std::io::stderr(), "error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(arguments: Arguments) -> Result<(), ConcealError> {
+    let mut out = std::io::stdout();
+    match arguments.task {
+        Task::Generate { cases, seed, first, exact, out: folder } => {
+            for case in first..first + cases {
+                let made = generate(seed, case, exact)?;
+                made.write(&folder.join(format!("case_{case:03}")))?;
+                let hidden: Vec<String> = made
+                    .truth
+                    .hidden
+                    .iter()
+                    .map(|cause| format!("{} ({:.1} × noise)", cause.law, cause.strength))
+                    .collect();
+                let _ = writeln!(
+                    out,
+                    "case {case:03}  {:9}  {:8}  {}",
+                    made.truth.family,
+                    made.truth.kind,
+                    hidden.join(", ")
+                );
+            }
+        }
+        Task::Score { folder, program, without_truth, no_run, markdown } => {
+            let options = score::Options { program, without_truth, run: !no_run };
+            let progress = |line: &str| {
+                let _ = writeln!(std::io::stderr(), "{line}");
+            };
+            let scored = score::all(&folder, &options, progress)?;
+            let page = score::page(&scored, &options);
+            if let Some(path) = markdown {
+                std::fs::write(&path, &page).map_err(|source| ConcealError::File { path, source })?;
+            }
+            let _ = writeln!(out, "{page}");
+        }
+    }
+    Ok(())
+}

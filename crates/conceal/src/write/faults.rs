@@ -1,0 +1,87 @@
+//! Faults of sensors and logs.
+
+use crate::case::{amount, every_second};
+use crate::dice::Dice;
+use crate::family::{Family, Needs};
+use crate::plan::Plan;
+use crate::sensor::Artefact;
+
+/// The fault of the `number`th faulty case, and what it needs of the recording.
+pub fn choose(family: Family, number: usize, needs: &mut Needs) -> &'static str {
+    const IDS: [&str; 9] = [
+        "latency",
+        "accelerometer_bias",
+        "speed_scale",
+        "force_scale",
+        "stuck_channel",
+        "quantisation",
+        "clock_drift",
+        "accelerometer_tilt",
+        "dropout",
+    ];
+    // Families go round every three cases: shifted each round, so that every fault meets every family.
+    let id = IDS[(number + number / IDS.len()) % IDS.len()];
+    match id {
+        "accelerometer_bias" | "accelerometer_tilt" => needs.accelerometer = true,
+        "speed_scale" => {
+            needs.position = true;
+            needs.wheel_speed = family == Family::Transport;
+        }
+        _ => {}
+    }
+    id
+}
+
+/// Draws a fault for a plan.
+pub fn draw(id: &'static str, plan: &Plan, dice: &mut Dice) -> Artefact {
+    let electric = plan.vehicle.electric.is_some();
+    let drive = if electric { "motor_torque_n_m" } else { "tractive_force_n" };
+    let none = Artefact { id, channels: Vec::new(), amount: 0.0, spells: Vec::new(), told: Vec::new() };
+    let of = |channels: Vec<&'static str>, value: f64, name: &str, unit: &str| Artefact {
+        channels,
+        amount: value,
+        told: amount(name, value, unit),
+        ..none.clone()
+    };
+    let runs = plan.runs.len();
+    let seconds = if plan.family == "coast" { 4.5 } else { plan.runs[0].stop.after_s };
+    match id {
+        "latency" => {
+            let late = if electric { dice.within(0.25, 0.8) } else { dice.within(0.12, 0.4) };
+            of(vec!["speed_m_s"], late, "latency_s", "s")
+        }
+        "speed_scale" => of(vec!["speed_m_s"], dice.sign() * dice.within(0.02, 0.06), "scale", "1"),
+        "force_scale" => of(vec![drive], dice.sign() * dice.within(0.05, 0.14), "scale", "1"),
+        "accelerometer_bias" => {
+            of(vec!["specific_force_m_s2"], dice.sign() * dice.within(0.06, 0.3), "bias_m_s2", "m/s²")
+        }
+        "accelerometer_tilt" => {
+            let gain = dice.within(0.004, 0.012);
+            let total = gain + plan.vehicle.pitch_gain_rad_s2_m;
+            let mut tilt = of(vec!["specific_force_m_s2"], total, "pitch_rad_s2_m", "rad s²/m");
+            tilt.amount = gain * plan.vehicle.gravity_m_s2;
+            tilt
+        }
+        "clock_drift" => {
+            let rate = if electric { dice.within(0.002, 0.006) } else { dice.within(0.005, 0.012) };
+            of(vec![drive], dice.sign() * rate, "rate", "1")
+        }
+        "quantisation" => of(vec!["speed_m_s"], dice.within(0.2, 0.5), "step_m_s", "m/s"),
+        "dropout" => {
+            let held = if dice.chance(0.5) { 1.0 } else { 0.0 };
+            let spells = every_second(runs, |_| {
+                let from = dice.within(1.0, 0.6 * seconds);
+                (from, from + dice.within(0.06, 0.14) * seconds.min(30.0), held)
+            });
+            Artefact { channels: vec!["speed_m_s"], spells, ..none }
+        }
+        _ => {
+            let channel = if plan.family == "coast" { "speed_m_s" } else { drive };
+            let spells = every_second(runs, |_| {
+                let from = dice.within(1.0, 0.5 * seconds);
+                (from, from + dice.within(0.2, 0.35) * seconds, 1.0)
+            });
+            Artefact { channels: vec![channel], spells, ..none }
+        }
+    }
+}

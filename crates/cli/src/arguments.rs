@@ -50,6 +50,9 @@ pub enum Command {
     Coastdown(CoastdownOptions),
     /// A built-in example that needs no file
     Demo(DemoOptions),
+    /// Make `docs/validation.md` from the published recordings
+    #[command(hide = true)]
+    Validate(ValidateOptions),
     /// List the models that scenarios can name, with their parameters, equations and sources
     Plugins(PluginsOptions),
 }
@@ -155,6 +158,17 @@ pub struct DemoOptions {
     pub list: bool,
     /// Where results are put
     #[arg(long, value_name = "DIR", default_value = "out/demo")]
+    pub out: PathBuf,
+}
+
+/// Options of `headland validate`.
+#[derive(Args, Debug)]
+pub struct ValidateOptions {
+    /// Folder of the scenarios, with `recordings/` in it
+    #[arg(long, value_name = "DIR", default_value = "scenarios")]
+    pub scenarios: PathBuf,
+    /// The page
+    #[arg(long, value_name = "FILE", default_value = "docs/validation.md")]
     pub out: PathBuf,
 }
 

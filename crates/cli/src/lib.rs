@@ -22,6 +22,7 @@ mod picture;
 mod say;
 mod staged;
 mod study_input;
+mod validation;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -72,6 +73,9 @@ fn begin(registry: &Registry, arguments: &Arguments, say: Say) -> Result<(), Fai
         }
         Command::Coastdown(options) => command::coastdown::coastdown(options, arguments.common.seed, say),
         Command::Demo(options) => command::demo::demo(registry, options, arguments.common.seed, say),
+        Command::Validate(options) => {
+            command::validate::validate(registry, options, arguments.common.seed, say)
+        }
         Command::Plugins(options) => command::plugins::plugins(registry, options, say),
     }
 }

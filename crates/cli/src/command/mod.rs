@@ -8,3 +8,4 @@ pub mod demo;
 pub mod diagnose;
 pub mod plugins;
 pub mod run;
+pub mod validate;

@@ -1,0 +1,30 @@
+//! `docs/validation.md`, made from the recordings: no figure in it is typed in.
+
+mod buggy;
+mod car;
+mod study;
+mod table;
+mod truck;
+mod vehicle;
+
+use crate::failure::Failure;
+use crate::say::Say;
+use headland_plugin::Registry;
+use std::path::Path;
+
+/// The whole page; `scenarios` is the folder of the scenarios, `recordings` below it that of the descriptions.
+pub fn page(registry: &Registry, scenarios: &Path, seed: u64, say: Say) -> Result<String, Failure> {
+    let parts = [
+        car::part(registry, scenarios, say)?,
+        truck::part(registry, scenarios, say)?,
+        study::part(registry, scenarios, seed, say)?,
+        buggy::part(scenarios, seed, say)?,
+    ];
+    Ok(format!("{}\n{}", INTRODUCTION, parts.join("\n")))
+}
+
+const INTRODUCTION: &str = "# Validation\n\n\
+Made by `headland validate` from recordings that other people published (`HEADLAND_RECORDINGS` names their folder); every \
+figure below was computed by that command. *Before* is the scenario as it stands, from general knowledge of the vehicle; \
+*after* is the same scenario with its free parameters fitted by least squares, priors included. Runs marked *held out* were \
+never fitted. Errors are modelled minus measured. A total passes where it is within 5 %.\n";

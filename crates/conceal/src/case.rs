@@ -3,10 +3,10 @@
 use crate::dice::Dice;
 use crate::error::ConcealError;
 use crate::family::{Family, Needs};
-use crate::hidden::{Law, Spell, Told, ask, draw, listed_of, pair_of, told, unlisted_of};
+use crate::hidden::{Law, Spell, Told, ask, draw, listed_of, pair_of, parameter, unlisted_of};
 use crate::plan::Plan;
 use crate::plant::{self, Begin, Sample};
-use crate::sensor::{Artefact, measure};
+use crate::sensor::{Artefact, Sensor, measure};
 use crate::truth::{Cause, SCHEMA, Truth};
 use crate::write;
 use headland_trace::{Origin, Run, Trace};
@@ -66,11 +66,23 @@ pub struct Case {
     pub truth: Truth,
 }
 
-/// Makes a case of a set. `exact` states every nominal parameter as it is.
+/// How much of a case is as the nominal model has it: to test the plant, not a diagnosis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Probe {
+    /// A case as it should be.
+    #[default]
+    No,
+    /// Every nominal parameter is stated as it is.
+    Exact,
+    /// That, and sensors without noise, steps, lag and hold.
+    Noiseless,
+}
+
+/// Makes a case of a set.
 ///
 /// # Errors
 /// [`ConcealError::Trace`] where the logs do not come together: a bug.
-pub fn generate(seed: u64, case: usize, exact: bool) -> Result<Case, ConcealError> {
+pub fn generate(seed: u64, case: usize, probe: Probe) -> Result<Case, ConcealError> {
     let (kind, number) = kind_of(case);
     // The order in which laws are dealt is that of the set; all else is the case's own.
     let mut deal = Dice::new(seed, 0);
@@ -92,12 +104,17 @@ pub fn generate(seed: u64, case: usize, exact: bool) -> Result<Case, ConcealErro
         }
         Kind::Empty | Kind::Artefact => (families[number % families.len()], Vec::new()),
     };
-    let mut needs = Needs { exact, ..Needs::default() };
+    let mut needs = Needs { exact: probe != Probe::No, ..Needs::default() };
     for name in &names {
         ask(name, &mut needs, &mut dice);
     }
     let fault = (kind == Kind::Artefact).then(|| write::faults::choose(family, number, &mut needs));
-    let plan = family.plan(&needs, &mut dice);
+    let mut plan = family.plan(&needs, &mut dice);
+    if probe == Probe::Noiseless {
+        for channel in &mut plan.channels {
+            (channel.sensor, channel.decimals) = (Sensor::default(), channel.decimals + 4);
+        }
+    }
     let laws: Vec<Law> = names.iter().map(|name| draw(name, &plan, &mut dice)).collect();
     let faults: Vec<Artefact> =
         fault.into_iter().map(|id| write::faults::draw(id, &plan, &mut dice)).collect();
@@ -116,6 +133,7 @@ fn assemble(
     let columns: Vec<String> = columns(laws);
     let mut squares = vec![(0.0, 0usize); laws.len()];
     let mut faulty = vec![(0.0, 0usize); faults.len()];
+    let mut currents = (0.0, 0.0);
     for (index, run) in plan.runs.iter().enumerate() {
         let begin = Begin {
             position_m: run.position_m,
@@ -147,6 +165,9 @@ fn assemble(
             }
             truth.push(column.clone(), values, Origin::Measured)?;
         }
+        for sample in samples.iter().filter(|_| plan.vehicle.electric.is_some()) {
+            currents = (currents.0 + sample.battery_current_a.powi(2), currents.1 + 1.0);
+        }
         for channel in &plan.channels {
             let own = dice.fork();
             let mine: Vec<&Artefact> =
@@ -157,7 +178,8 @@ fn assemble(
             let values = log_of(&mine);
             if !mine.is_empty() {
                 let sound = log_of(&[]);
-                let error: Vec<f64> = values.iter().zip(&sound).map(|(faulty, sound)| faulty - sound).collect();
+                let error: Vec<f64> =
+                    values.iter().zip(&sound).map(|(faulty, sound)| faulty - sound).collect();
                 let lost = |error: &f64| if error.is_finite() { error * error } else { 0.0 };
                 faulty[0].0 += error.iter().map(lost).sum::<f64>();
                 faulty[0].1 += error.len();
@@ -168,38 +190,8 @@ fn assemble(
         logs.push(Run { id: run.id.clone(), trace: log });
         along.push(Run { id: run.id.clone(), trace: truth });
     }
-    let rms = |(sum, count): (f64, usize)| (sum / count.max(1) as f64).sqrt();
-    let mut hidden: Vec<Cause> = Vec::new();
-    for (index, law) in laws.iter().enumerate() {
-        let rms = rms(squares[index]);
-        let noise = match unit(law) {
-            "w" => plan.power_noise_w(),
-            "m_s" => plan.second_noise("speed_m_s").hypot(plan.second_noise("wheel_speed_m_s")),
-            _ => plan.force_noise_n(),
-        };
-        hidden.push(Cause {
-            id: law.id().to_owned(),
-            law: names[index].to_owned(),
-            class: "physics".to_owned(),
-            parameters: law.told(),
-            column: columns[index].clone(),
-            rms,
-            strength: rms / noise,
-        });
-    }
-    for (index, fault) in faults.iter().enumerate() {
-        let channel = fault.channels[0];
-        let rms = rms(faulty[index]);
-        hidden.push(Cause {
-            id: fault.id.to_owned(),
-            law: format!("{} of {channel}", fault.id),
-            class: "artefact".to_owned(),
-            parameters: fault.told.clone(),
-            column: format!("{channel}_error"),
-            rms,
-            strength: rms / plan.second_noise(channel).max(1e-12),
-        });
-    }
+    let current_a = (currents.0 / f64::max(currents.1, 1.0)).sqrt();
+    let hidden = causes(&plan, laws, names, faults, &columns, &squares, &faulty, current_a);
     let also_true =
         if plan.has("specific_force_m_s2") { vec!["accelerometer_tilt".to_owned()] } else { Vec::new() };
     let truth = Truth {
@@ -217,6 +209,60 @@ fn assemble(
         held_out: plan.runs.iter().filter(|run| run.held_out).map(|run| run.id.clone()).collect(),
     };
     Ok(Case { plan, logs, along, truth })
+}
+
+/// Tells what was hidden and how strong it is; `current_a` is the battery's root mean square.
+#[allow(clippy::too_many_arguments, reason = "sums of one pass over the runs")]
+fn causes(
+    plan: &Plan,
+    laws: &[Law],
+    names: &[&'static str],
+    faults: &[Artefact],
+    columns: &[String],
+    squares: &[(f64, usize)],
+    faulty: &[(f64, usize)],
+    current_a: f64,
+) -> Vec<Cause> {
+    let rms = |(sum, count): (f64, usize)| (sum / count.max(1) as f64).sqrt();
+    let mut hidden: Vec<Cause> = Vec::new();
+    for (index, law) in laws.iter().enumerate() {
+        let rms = rms(squares[index]);
+        let noise = match unit(law) {
+            "w" => plan.power_noise_w(),
+            "m_s" => plan.second_noise("speed_m_s").hypot(plan.second_noise("wheel_speed_m_s")),
+            _ => plan.force_noise_n(),
+        };
+        let strength = match law {
+            // A battery's own loss shows in no terminal power: it is seen as a voltage, ΔR I.
+            Law::BatteryResistance { resistance_ohm } => {
+                resistance_ohm * current_a / plan.second_noise("battery_voltage_v").max(1e-12)
+            }
+            _ => rms / noise.max(1e-12),
+        };
+        hidden.push(Cause {
+            id: law.id().to_owned(),
+            law: names[index].to_owned(),
+            class: "physics".to_owned(),
+            parameters: law.told(),
+            column: columns[index].clone(),
+            rms,
+            strength,
+        });
+    }
+    for (index, fault) in faults.iter().enumerate() {
+        let channel = fault.channels[0];
+        let rms = rms(faulty[index]);
+        hidden.push(Cause {
+            id: fault.id.to_owned(),
+            law: format!("{} of {channel}", fault.id),
+            class: "artefact".to_owned(),
+            parameters: fault.told.clone(),
+            column: format!("{channel}_error"),
+            rms,
+            strength: rms / plan.second_noise(channel).max(1e-12),
+        });
+    }
+    hidden
 }
 
 fn unit(law: &Law) -> &'static str {
@@ -250,7 +296,7 @@ impl Case {
 
 /// A fault's parameter.
 pub(crate) fn amount(name: &str, value: f64, unit: &str) -> Vec<Told> {
-    vec![told(name, value, unit)]
+    vec![parameter(name, value, unit)]
 }
 
 /// A spell in every second run.

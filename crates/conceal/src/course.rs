@@ -53,8 +53,9 @@ mod tests {
     fn a_bend_turns_by_the_integral_of_its_curvature() {
         let bend = Bend { middle_m: 50.0, half_length_m: 20.0, curvature_per_m: 0.02 };
         let course = Course { heading_rad: 1.0, bends: vec![bend] };
-        let sum: f64 =
-            (0..100_000).map(|step| course.curvature_per_m((f64::from(step) + 0.5) * 1e-3, false) * 1e-3).sum();
+        let sum: f64 = (0..100_000)
+            .map(|step| course.curvature_per_m((f64::from(step) + 0.5) * 1e-3, false) * 1e-3)
+            .sum();
         assert!((course.heading_rad(100.0, false) - 1.0 - sum).abs() < 1e-9);
         assert!((sum - 0.4).abs() < 1e-9, "κ L by hand: {sum}");
     }

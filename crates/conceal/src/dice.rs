@@ -66,7 +66,11 @@ impl Dice {
 
     /// A whole number below `end`, which is at least 1.
     pub fn below(&mut self, end: usize) -> usize {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to end, which is small")]
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "0 to end, which is small"
+        )]
         let index = (self.share() * end as f64) as usize;
         index.min(end.saturating_sub(1))
     }

@@ -22,7 +22,7 @@ mod sensor;
 mod truth;
 mod write;
 
-pub use case::{Case, Kind, generate, kind_of};
+pub use case::{Case, Kind, Probe, generate, kind_of};
 pub use course::{Bend, Course};
 pub use dice::Dice;
 pub use error::ConcealError;

@@ -1,7 +1,7 @@
 //! The program `conceal`: makes concealed cases, and scores a diagnosis on them.
 
 use clap::{Parser, Subcommand};
-use headland_conceal::{ConcealError, generate, score};
+use headland_conceal::{ConcealError, Probe, generate, score};
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -29,6 +29,9 @@ enum Task {
         /// State every nominal parameter as it is: to test the plant, not a diagnosis
         #[arg(long)]
         exact: bool,
+        /// That, and sensors without noise: what is left is how plant and model differ
+        #[arg(long)]
+        noiseless: bool,
         /// Where the cases are put
         #[arg(long)]
         out: PathBuf,
@@ -65,9 +68,14 @@ fn main() -> ExitCode {
 fn run(arguments: Arguments) -> Result<(), ConcealError> {
     let mut out = std::io::stdout();
     match arguments.task {
-        Task::Generate { cases, seed, first, exact, out: folder } => {
+        Task::Generate { cases, seed, first, exact, noiseless, out: folder } => {
+            let probe = match (noiseless, exact) {
+                (true, _) => Probe::Noiseless,
+                (false, true) => Probe::Exact,
+                (false, false) => Probe::No,
+            };
             for case in first..first + cases {
-                let made = generate(seed, case, exact)?;
+                let made = generate(seed, case, probe)?;
                 made.write(&folder.join(format!("case_{case:03}")))?;
                 let hidden: Vec<String> = made
                     .truth

@@ -1,6 +1,6 @@
 //! A heavy tractor on soft ground: coast-downs from about 30 and 15 km/h, and driven runs, both ways on one lane.
 
-use super::{Logger, Needs, channel, flag, prior, ramps};
+use super::{Logger, Needs, channel, flag, prior, ramps, rounded};
 use crate::course::Course;
 use crate::dice::Dice;
 use crate::plan::{Nominal, Plan, RunPlan};
@@ -16,9 +16,12 @@ const DRIVEN_S: f64 = 40.0;
 const SLOWEST_M_S: f64 = 0.8;
 
 pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
-    let (mass, turning) = (dice.within(11_500.0, 14_500.0), dice.within(450.0, 1100.0));
-    let (area, coefficient, density) =
-        (dice.within(5.0, 7.5), dice.within(0.045, 0.085), dice.within(1.17, 1.27));
+    let (mass, turning) = (rounded(dice.within(11_500.0, 14_500.0)), rounded(dice.within(450.0, 1100.0)));
+    let (area, coefficient, density) = (
+        rounded(dice.within(5.0, 7.5)),
+        rounded(dice.within(0.045, 0.085)),
+        rounded(dice.within(1.17, 1.27)),
+    );
     let scale = 100.0 / 3.6;
     let heading = dice.within(0.0, TAU);
     let accelerometer = dice.chance(0.4) || needs.accelerometer;
@@ -26,9 +29,19 @@ pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
     let logger = Logger { lag_s: dice.within(0.02, 0.05), hold_s: if dice.chance(0.4) { 0.1 } else { 0.0 } };
     let speed_noise = dice.within(0.015, 0.035);
     let mut channels = vec![
-        channel("speed_m_s", |sample| sample.speed_m_s, logger.sensor(speed_noise, 0.1 * speed_noise, 0.001), 4),
+        channel(
+            "speed_m_s",
+            |sample| sample.speed_m_s,
+            logger.sensor(speed_noise, 0.1 * speed_noise, 0.001),
+            4,
+        ),
         flag("coasting", |sample| sample.coasting),
-        channel("tractive_force_n", |sample| sample.drive_n, logger.sensor(dice.within(80.0, 250.0), 6.0, 5.0), 1),
+        channel(
+            "tractive_force_n",
+            |sample| sample.drive_n,
+            logger.sensor(dice.within(80.0, 250.0), 6.0, 5.0),
+            1,
+        ),
     ];
     if position {
         let gnss = Sensor { white: 0.04, drift: 0.1, drift_s: 20.0, step: 0.01, ..Sensor::default() };
@@ -52,7 +65,8 @@ pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
         vehicle: "(name: \"heavy tractor\", mass_kg: {vehicle.mass_kg}, rotating_mass_kg: \
                   {vehicle.rotating_mass_kg}, drag_area_m2: {vehicle.drag_area_m2}, driveline: Neutral())"
             .to_owned(),
-        soil: "LinearSpeedLaw(coefficient: {ground.soil.coefficient}, speed_scale_m_s: \"100 km/h\")".to_owned(),
+        soil: "LinearSpeedLaw(coefficient: {ground.soil.coefficient}, speed_scale_m_s: \"100 km/h\")"
+            .to_owned(),
         smoothing_s: 0.5,
     };
     Plan {
@@ -90,7 +104,11 @@ fn runs(dice: &mut Dice) -> Vec<RunPlan> {
     let mut runs = Vec::new();
     for index in 0..14 {
         let driven = DRIVEN.contains(&index);
-        let reversed = if driven { DRIVEN.iter().position(|of| *of == index).unwrap_or(0) % 2 == 1 } else { index % 2 == 1 };
+        let reversed = if driven {
+            DRIVEN.iter().position(|of| *of == index).unwrap_or(0) % 2 == 1
+        } else {
+            index % 2 == 1
+        };
         let reversed = if SLOW.contains(&index) { index % 4 >= 2 } else { reversed };
         let top = if SLOW.contains(&index) { dice.within(4.0, 5.2) } else { dice.within(8.0, 9.4) };
         let (speed, goal, after_s) = if driven {

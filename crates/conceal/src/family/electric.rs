@@ -1,6 +1,6 @@
 //! An electric car on the road: motor torque and speed, battery voltage and current, 200 s at 10 Hz.
 
-use super::{Logger, Needs, channel, flag, prior, ramps};
+use super::{Logger, Needs, channel, flag, prior, ramps, rounded};
 use crate::course::Course;
 use crate::dice::Dice;
 use crate::plan::{Channel, Nominal, Plan, RunPlan};
@@ -16,20 +16,23 @@ const RUN_S: f64 = 170.0;
 const RUNS: usize = 10;
 
 pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
-    let (mass, turning) = (dice.within(1150.0, 1700.0), dice.within(45.0, 85.0));
-    let (area, coefficient, density) =
-        (dice.within(0.55, 0.8), dice.within(0.008, 0.013), dice.within(1.15, 1.28));
+    let (mass, turning) = (rounded(dice.within(1150.0, 1700.0)), rounded(dice.within(45.0, 85.0)));
+    let (area, coefficient, density) = (
+        rounded(dice.within(0.55, 0.8)),
+        rounded(dice.within(0.008, 0.013)),
+        rounded(dice.within(1.15, 1.28)),
+    );
     let drive = Electric {
         voltage_v: dice.within(330.0, 390.0).round(),
         rise_v: dice.within(30.0, 60.0).round(),
-        resistance_ohm: dice.within(0.07, 0.14),
+        resistance_ohm: rounded(dice.within(0.07, 0.14)),
         capacity_a_h: dice.within(55.0, 110.0).round(),
-        charge: dice.within(0.6, 0.85),
-        gear_ratio: dice.within(8.0, 11.0),
+        charge: rounded(dice.within(0.6, 0.85)),
+        gear_ratio: rounded(dice.within(8.0, 11.0)),
         gear_efficiency: 0.97,
-        radius_m: dice.within(0.31, 0.36),
-        efficiency: dice.within(0.87, 0.93),
-        standby_w: dice.within(200.0, 450.0),
+        radius_m: rounded(dice.within(0.31, 0.36)),
+        efficiency: rounded(dice.within(0.87, 0.93)),
+        standby_w: rounded(dice.within(200.0, 450.0)),
         most_torque_n_m: 250.0,
         most_power_w: 120_000.0,
     };
@@ -37,9 +40,33 @@ pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
         priors: vec![
             prior("vehicle.mass_kg", mass, 0.012 * mass, (900.0, 2400.0), 0.7, needs, dice),
             prior("vehicle.drag_area_m2", area, 0.08 * area, (0.3, 1.5), 0.7, needs, dice),
-            prior("ground.soil.coefficient", coefficient, 0.08 * coefficient, (0.004, 0.03), 0.85, needs, dice),
-            prior("vehicle.driveline.drive_efficiency", drive.efficiency, 0.012, (0.6, 1.0), 0.8, needs, dice),
-            prior("vehicle.driveline.standby_power_w", drive.standby_w, 60.0, (0.0, 3000.0), 0.7, needs, dice),
+            prior(
+                "ground.soil.coefficient",
+                coefficient,
+                0.08 * coefficient,
+                (0.004, 0.03),
+                0.85,
+                needs,
+                dice,
+            ),
+            prior(
+                "vehicle.driveline.drive_efficiency",
+                drive.efficiency,
+                0.012,
+                (0.6, 1.0),
+                0.8,
+                needs,
+                dice,
+            ),
+            prior(
+                "vehicle.driveline.standby_power_w",
+                drive.standby_w,
+                60.0,
+                (0.0, 3000.0),
+                0.7,
+                needs,
+                dice,
+            ),
         ],
         vehicle: format!(
             "(name: \"electric car\", mass_kg: {{vehicle.mass_kg}}, rotating_mass_kg: 0.0, drag_area_m2: \
@@ -48,10 +75,16 @@ pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
              max_torque_n_m: 250.0, max_regeneration_torque_n_m: 250.0, max_power_w: 120000.0, gear_ratio: {:?}, \
              gear_efficiency: 0.97, wheel_radius_m: {:?}, drive_efficiency: {{vehicle.driveline.drive_efficiency}}, \
              standby_power_w: {{vehicle.driveline.standby_power_w}}, rotating_mass_kg: {turning:?}))",
-            drive.voltage_v, drive.rise_v, drive.resistance_ohm, drive.capacity_a_h, drive.charge,
-            drive.gear_ratio, drive.radius_m,
+            drive.voltage_v,
+            drive.rise_v,
+            drive.resistance_ohm,
+            drive.capacity_a_h,
+            drive.charge,
+            drive.gear_ratio,
+            drive.radius_m,
         ),
-        soil: "QuadraticSpeedLaw(coefficient: {ground.soil.coefficient}, speed_scale_m_s: \"160 km/h\")".to_owned(),
+        soil: "QuadraticSpeedLaw(coefficient: {ground.soil.coefficient}, speed_scale_m_s: \"160 km/h\")"
+            .to_owned(),
         smoothing_s: 0.5,
     };
     Plan {
@@ -85,11 +118,26 @@ fn channels(needs: &Needs, dice: &mut Dice) -> Vec<Channel> {
     let speed_noise = dice.within(0.02, 0.05);
     let exact = |step: f64| Sensor { step, ..Sensor::default() };
     let mut channels = vec![
-        channel("speed_m_s", |sample| sample.speed_m_s, logger.sensor(speed_noise, 0.1 * speed_noise, 0.001), 4),
-        channel("motor_torque_n_m", |sample| sample.motor_torque_n_m, logger.sensor(dice.within(0.2, 0.6), 0.02, 0.1), 2),
+        channel(
+            "speed_m_s",
+            |sample| sample.speed_m_s,
+            logger.sensor(speed_noise, 0.1 * speed_noise, 0.001),
+            4,
+        ),
+        channel(
+            "motor_torque_n_m",
+            |sample| sample.motor_torque_n_m,
+            logger.sensor(dice.within(0.2, 0.6), 0.02, 0.1),
+            2,
+        ),
         channel("motor_speed_rad_s", |sample| sample.motor_speed_rad_s, logger.sensor(0.5, 0.05, 0.05), 2),
         channel("battery_voltage_v", |sample| sample.battery_voltage_v, logger.sensor(0.15, 0.02, 0.05), 2),
-        channel("battery_current_a", |sample| sample.battery_current_a, logger.sensor(dice.within(0.1, 0.4), 0.03, 0.05), 2),
+        channel(
+            "battery_current_a",
+            |sample| sample.battery_current_a,
+            logger.sensor(dice.within(0.1, 0.4), 0.03, 0.05),
+            2,
+        ),
         channel("state_of_charge", |sample| sample.charge, exact(0.001), 3),
     ];
     if dice.chance(0.7) || needs.position {

@@ -23,6 +23,7 @@ pub enum Family {
 
 /// What a hidden cause needs of the recording, so that it can show at all.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[allow(clippy::struct_excessive_bools, reason = "a list of wishes, each yes or no")]
 pub struct Needs {
     /// Places along the lane.
     pub position: bool,

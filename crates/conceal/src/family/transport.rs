@@ -1,6 +1,6 @@
 //! A tractor on the road: accelerations and holds, with the tractive force measured, 60 s at 50 Hz.
 
-use super::{Logger, Needs, channel, flag, prior, ramps};
+use super::{Logger, Needs, channel, flag, prior, ramps, rounded};
 use crate::course::{Bend, Course};
 use crate::dice::Dice;
 use crate::plan::{Channel, Nominal, Plan, RunPlan};
@@ -16,22 +16,39 @@ const RUN_S: f64 = 60.0;
 const RUNS: usize = 10;
 
 pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
-    let (mass, turning) = (dice.within(7000.0, 13_000.0), dice.within(300.0, 800.0));
+    let (mass, turning) = (rounded(dice.within(7000.0, 13_000.0)), rounded(dice.within(300.0, 800.0)));
     let (area, coefficient, density) =
-        (dice.within(4.5, 7.5), dice.within(0.014, 0.03), dice.within(1.17, 1.27));
-    let scale = dice.within(40.0, 60.0);
+        (rounded(dice.within(4.5, 7.5)), rounded(dice.within(0.014, 0.03)), rounded(dice.within(1.17, 1.27)));
+    let scale = rounded(dice.within(40.0, 60.0));
     let ballast = dice.chance(0.15) || needs.ballast;
     let course = Course { heading_rad: dice.within(0.0, TAU), bends: bends(needs, dice) };
     let nominal = Nominal {
         priors: vec![
-            prior("vehicle.mass_kg", mass, 0.006 * mass, (4000.0, 18_000.0), if ballast { 0.0 } else { 0.7 }, needs, dice),
+            prior(
+                "vehicle.mass_kg",
+                mass,
+                0.006 * mass,
+                (4000.0, 18_000.0),
+                if ballast { 0.0 } else { 0.7 },
+                needs,
+                dice,
+            ),
             prior("vehicle.rotating_mass_kg", turning, 0.0, (0.0, 4000.0), 0.0, needs, dice),
             prior("vehicle.drag_area_m2", area, 0.1 * area, (2.0, 14.0), 0.6, needs, dice),
-            prior("ground.soil.coefficient", coefficient, 0.06 * coefficient, (0.005, 0.1), 0.85, needs, dice),
+            prior(
+                "ground.soil.coefficient",
+                coefficient,
+                0.06 * coefficient,
+                (0.005, 0.1),
+                0.85,
+                needs,
+                dice,
+            ),
         ],
-        vehicle: "(name: \"tractor\", mass_kg: {vehicle.mass_kg}, rotating_mass_kg: {vehicle.rotating_mass_kg}, \
+        vehicle:
+            "(name: \"tractor\", mass_kg: {vehicle.mass_kg}, rotating_mass_kg: {vehicle.rotating_mass_kg}, \
                   drag_area_m2: {vehicle.drag_area_m2}, driveline: Neutral())"
-            .to_owned(),
+                .to_owned(),
         soil: format!("LinearSpeedLaw(coefficient: {{ground.soil.coefficient}}, speed_scale_m_s: {scale:?})"),
         smoothing_s: 0.2,
     };
@@ -66,7 +83,12 @@ fn channels(needs: &Needs, bends: bool, dice: &mut Dice) -> Vec<Channel> {
     let speed_noise = dice.within(0.012, 0.035);
     let force_noise = dice.within(60.0, 250.0);
     let mut channels = vec![
-        channel("speed_m_s", |sample| sample.speed_m_s, logger.sensor(speed_noise, 0.1 * speed_noise, 0.001), 4),
+        channel(
+            "speed_m_s",
+            |sample| sample.speed_m_s,
+            logger.sensor(speed_noise, 0.1 * speed_noise, 0.001),
+            4,
+        ),
         channel("tractive_force_n", |sample| sample.drive_n, logger.sensor(force_noise, 6.0, 5.0), 1),
     ];
     if dice.chance(0.75) || needs.position {

@@ -143,16 +143,30 @@ pub fn draw(law: &str, plan: &Plan, dice: &mut Dice) -> Law {
     let electric = plan.vehicle.electric.is_some();
     let coast = plan.family == "coast";
     let share = plan.vehicle.ground.share(0.0);
-    let (slow, fast) = if electric { (6.0, 20.0) } else if coast { (2.5, 7.5) } else { (4.0, 11.0) };
+    let (slow, fast) = if electric {
+        (6.0, 20.0)
+    } else if coast {
+        (2.5, 7.5)
+    } else {
+        (4.0, 11.0)
+    };
     let seconds = plan.runs.first().map_or(60.0, |run| run.stop.after_s.min(170.0));
     // A force of one to six per cent of the weight on soft ground, less on the road.
     let force_n = weight * if coast { dice.log_within(0.006, 0.03) } else { dice.log_within(0.004, 0.015) };
     match law {
         "wind" => Law::Wind { speed_m_s: dice.within(4.0, 12.0), from_rad: dice.within(0.0, TAU) },
         "grade" => {
-            let long = if electric { (250.0, 1100.0) } else if coast { (45.0, 130.0) } else { (90.0, 350.0) };
+            let long = if electric {
+                (250.0, 1100.0)
+            } else if coast {
+                (45.0, 130.0)
+            } else {
+                (90.0, 350.0)
+            };
             let steep = if coast { (0.006, 0.02) } else { (0.006, 0.025) };
-            let mut wave = || (dice.log_within(steep.0, steep.1), dice.log_within(long.0, long.1), dice.within(0.0, TAU));
+            let mut wave = || {
+                (dice.log_within(steep.0, steep.1), dice.log_within(long.0, long.1), dice.within(0.0, TAU))
+            };
             Law::Grade { waves: vec![wave(), wave()] }
         }
         "grade_constant" => Law::GradeConstant { grade: dice.sign() * dice.log_within(0.004, 0.025) },
@@ -164,9 +178,12 @@ pub fn draw(law: &str, plan: &Plan, dice: &mut Dice) -> Law {
             Law::PayloadChange { from_s, to_s, mass_kg: mass * dice.sign() * dice.within(0.1, 0.3) }
         }
         "aerodynamic_drag" => Law::AerodynamicDrag {
-            extra_area_m2: plan.vehicle.drag_area_m2 * if electric { dice.within(0.25, 0.7) } else { dice.within(0.5, 1.6) },
+            extra_area_m2: plan.vehicle.drag_area_m2
+                * if electric { dice.within(0.25, 0.7) } else { dice.within(0.5, 1.6) },
         },
-        "rolling_resistance" => Law::RollingResistance { coefficient: share * dice.sign() * dice.within(0.08, 0.3) },
+        "rolling_resistance" => {
+            Law::RollingResistance { coefficient: share * dice.sign() * dice.within(0.08, 0.3) }
+        }
         "rolling_speed_law" => Law::RollingSpeedLaw {
             linear: share * dice.sign() * dice.within(0.12, 0.5),
             reference_speed_m_s: dice.within(0.4, 0.7) * (slow + fast),
@@ -175,13 +192,17 @@ pub fn draw(law: &str, plan: &Plan, dice: &mut Dice) -> Law {
             cold_coefficient: dice.within(0.003, 0.01),
             time_constant_s: dice.within(30.0, 90.0),
         },
-        "rolling_temperature/cold" => Law::TyreCold {
-            coefficient_per_k: dice.within(1.5e-4, 5e-4),
-            reference_temperature_c: 20.0,
-        },
+        "rolling_temperature/cold" => {
+            Law::TyreCold { coefficient_per_k: dice.within(1.5e-4, 5e-4), reference_temperature_c: 20.0 }
+        }
         "soft_ground" => {
-            let (first, last, length) =
-                if electric { (400.0, 2000.0, (80.0, 300.0)) } else if coast { (70.0, 175.0, (12.0, 35.0)) } else { (100.0, 500.0, (30.0, 90.0)) };
+            let (first, last, length) = if electric {
+                (400.0, 2000.0, (80.0, 300.0))
+            } else if coast {
+                (70.0, 175.0, (12.0, 35.0))
+            } else {
+                (100.0, 500.0, (30.0, 90.0))
+            };
             let half_wheelbase_m = if electric { 1.3 } else { 1.7 };
             let mut patches = Vec::new();
             for index in 0..=dice.below(2) {
@@ -284,7 +305,12 @@ fn spells(
         for index in 0..count {
             let length = dice.within(length_s.0, length_s.1).min(0.7 * slot);
             let from_s = 3.0 + slot * index as f64 + dice.within(0.0, slot - length);
-            all.push(Spell { run, from_s, to_s: from_s + length, amount: dice.log_within(amount.0, amount.1) });
+            all.push(Spell {
+                run,
+                from_s,
+                to_s: from_s + length,
+                amount: dice.log_within(amount.0, amount.1),
+            });
         }
     }
     all

@@ -4,7 +4,7 @@
 //! in proportion to pull (Wong, *Theory of Ground Vehicles* (2008)), warm-up as one time constant.
 
 use super::unlisted::Unlisted;
-use super::{Now, Push, Told, told};
+use super::{Now, Push};
 
 /// A spell of one run: index of the run, begin and end [s], and how much.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,37 +23,117 @@ pub struct Spell {
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs, reason = "fields are named as the parameters are told")]
 pub enum Law {
-    Wind { speed_m_s: f64, from_rad: f64 },
+    Wind {
+        speed_m_s: f64,
+        from_rad: f64,
+    },
     /// Waves of the grade: amplitude, wavelength [m], phase.
-    Grade { waves: Vec<(f64, f64, f64)> },
-    GradeConstant { grade: f64 },
-    RotatingInertia { rotating_mass_kg: f64 },
-    Mass { extra_mass_kg: f64 },
-    PayloadChange { from_s: f64, to_s: f64, mass_kg: f64 },
-    AerodynamicDrag { extra_area_m2: f64 },
-    RollingResistance { coefficient: f64 },
-    RollingSpeedLaw { linear: f64, reference_speed_m_s: f64 },
-    TyreWarmUp { cold_coefficient: f64, time_constant_s: f64 },
-    TyreCold { coefficient_per_k: f64, reference_temperature_c: f64 },
+    Grade {
+        waves: Vec<(f64, f64, f64)>,
+    },
+    GradeConstant {
+        grade: f64,
+    },
+    RotatingInertia {
+        rotating_mass_kg: f64,
+    },
+    Mass {
+        extra_mass_kg: f64,
+    },
+    PayloadChange {
+        from_s: f64,
+        to_s: f64,
+        mass_kg: f64,
+    },
+    AerodynamicDrag {
+        extra_area_m2: f64,
+    },
+    RollingResistance {
+        coefficient: f64,
+    },
+    RollingSpeedLaw {
+        linear: f64,
+        reference_speed_m_s: f64,
+    },
+    TyreWarmUp {
+        cold_coefficient: f64,
+        time_constant_s: f64,
+    },
+    TyreCold {
+        coefficient_per_k: f64,
+        reference_temperature_c: f64,
+    },
     /// Patches: begin, end [m], coefficient; each axle meets them by itself.
-    SoftGround { patches: Vec<(f64, f64, f64)>, half_wheelbase_m: f64 },
-    Multipass { coefficient: f64, factor: f64 },
-    NeutralDrag { force_n: f64, viscous_n_s_m: f64 },
-    DrivelineTemperature { cold_force_n: f64, cold_viscous_n_s_m: f64, time_constant_s: f64 },
-    BrakeDrag { force_n: f64 },
-    Braking { spells: Vec<Spell> },
-    CorneringDrag { cornering_stiffness_n_per_rad: f64 },
-    LoadDependence { coefficient: f64, exponent: f64, reference_mass_kg: f64 },
-    DrawbarLoad { force_n: f64, linear_n_s_m: f64, from_s: f64, to_s: f64 },
-    SpeedThreshold { force_n: f64, threshold_m_s: f64, width_m_s: f64 },
-    DrivelineEfficiency { loss: f64 },
-    VariatorLoss { loss: f64, node_m_s: f64 },
-    ShiftTransient { force_n: f64, speed_m_s: f64, width_m_s: f64 },
-    WheelSlip { coefficient: f64 },
-    AuxiliaryConstant { power_w: f64 },
-    AuxiliarySwitched { spells: Vec<Spell> },
-    AuxiliaryByCold { freezing_power_w: f64, balance_temperature_c: f64 },
-    BatteryResistance { resistance_ohm: f64 },
+    SoftGround {
+        patches: Vec<(f64, f64, f64)>,
+        half_wheelbase_m: f64,
+    },
+    Multipass {
+        coefficient: f64,
+        factor: f64,
+    },
+    NeutralDrag {
+        force_n: f64,
+        viscous_n_s_m: f64,
+    },
+    DrivelineTemperature {
+        cold_force_n: f64,
+        cold_viscous_n_s_m: f64,
+        time_constant_s: f64,
+    },
+    BrakeDrag {
+        force_n: f64,
+    },
+    Braking {
+        spells: Vec<Spell>,
+    },
+    CorneringDrag {
+        cornering_stiffness_n_per_rad: f64,
+    },
+    LoadDependence {
+        coefficient: f64,
+        exponent: f64,
+        reference_mass_kg: f64,
+    },
+    DrawbarLoad {
+        force_n: f64,
+        linear_n_s_m: f64,
+        from_s: f64,
+        to_s: f64,
+    },
+    SpeedThreshold {
+        force_n: f64,
+        threshold_m_s: f64,
+        width_m_s: f64,
+    },
+    DrivelineEfficiency {
+        loss: f64,
+    },
+    VariatorLoss {
+        loss: f64,
+        node_m_s: f64,
+    },
+    ShiftTransient {
+        force_n: f64,
+        speed_m_s: f64,
+        width_m_s: f64,
+    },
+    WheelSlip {
+        coefficient: f64,
+    },
+    AuxiliaryConstant {
+        power_w: f64,
+    },
+    AuxiliarySwitched {
+        spells: Vec<Spell>,
+    },
+    AuxiliaryByCold {
+        freezing_power_w: f64,
+        balance_temperature_c: f64,
+    },
+    BatteryResistance {
+        resistance_ohm: f64,
+    },
     Other(Unlisted),
 }
 
@@ -63,46 +143,12 @@ fn since(now: &Now) -> f64 {
 }
 
 fn spell(spells: &[Spell], now: &Now) -> f64 {
-    let inside = |spell: &&Spell| spell.run == now.run && now.time_s >= spell.from_s && now.time_s < spell.to_s;
+    let inside =
+        |spell: &&Spell| spell.run == now.run && now.time_s >= spell.from_s && now.time_s < spell.to_s;
     spells.iter().find(inside).map_or(0.0, |spell| spell.amount)
 }
 
 impl Law {
-    /// The contract's id, or `unlisted`.
-    pub fn id(&self) -> &'static str {
-        match self {
-            Self::Wind { .. } => "wind",
-            Self::Grade { .. } => "grade",
-            Self::GradeConstant { .. } => "grade_constant",
-            Self::RotatingInertia { .. } => "rotating_inertia",
-            Self::Mass { .. } => "mass",
-            Self::PayloadChange { .. } => "payload_change",
-            Self::AerodynamicDrag { .. } => "aerodynamic_drag",
-            Self::RollingResistance { .. } => "rolling_resistance",
-            Self::RollingSpeedLaw { .. } => "rolling_speed_law",
-            Self::TyreWarmUp { .. } | Self::TyreCold { .. } => "rolling_temperature",
-            Self::SoftGround { .. } => "soft_ground",
-            Self::Multipass { .. } => "multipass",
-            Self::NeutralDrag { .. } => "neutral_drag",
-            Self::DrivelineTemperature { .. } => "driveline_temperature",
-            Self::BrakeDrag { .. } => "brake_drag",
-            Self::Braking { .. } => "braking",
-            Self::CorneringDrag { .. } => "cornering_drag",
-            Self::LoadDependence { .. } => "load_dependence",
-            Self::DrawbarLoad { .. } => "drawbar_load",
-            Self::SpeedThreshold { .. } => "speed_threshold",
-            Self::DrivelineEfficiency { .. } => "driveline_efficiency",
-            Self::VariatorLoss { .. } => "variator_loss",
-            Self::ShiftTransient { .. } => "shift_transient",
-            Self::WheelSlip { .. } => "wheel_slip",
-            Self::AuxiliaryConstant { .. } | Self::AuxiliarySwitched { .. } | Self::AuxiliaryByCold { .. } => {
-                "auxiliary_power"
-            }
-            Self::BatteryResistance { .. } => "battery_resistance",
-            Self::Other(_) => "unlisted",
-        }
-    }
-
     /// What it does to the plant.
     pub fn push(&self, now: &Now) -> Push {
         let force = |forward_n: f64| Push { forward_n, ..Push::default() };
@@ -126,7 +172,9 @@ impl Law {
                 let share = ((now.time_s - from_s) / (to_s - from_s)).clamp(0.0, 1.0);
                 Push { mass_kg: mass_kg * share, ..Push::default() }
             }
-            Self::AerodynamicDrag { extra_area_m2 } => drag(0.5 * now.air_density_kg_m3 * extra_area_m2 * v * v),
+            Self::AerodynamicDrag { extra_area_m2 } => {
+                drag(0.5 * now.air_density_kg_m3 * extra_area_m2 * v * v)
+            }
             Self::RollingResistance { coefficient } => drag(coefficient * weight),
             Self::RollingSpeedLaw { linear, reference_speed_m_s } => {
                 drag(linear * weight * (v - reference_speed_m_s) / reference_speed_m_s)
@@ -139,7 +187,11 @@ impl Law {
             }
             Self::SoftGround { patches, half_wheelbase_m } => {
                 let under = |place: f64| -> f64 {
-                    patches.iter().filter(|(from, to, _)| place >= *from && place < *to).map(|patch| patch.2).sum()
+                    patches
+                        .iter()
+                        .filter(|(from, to, _)| place >= *from && place < *to)
+                        .map(|patch| patch.2)
+                        .sum()
                 };
                 let front = under(now.position_m + half_wheelbase_m);
                 let rear = under(now.position_m - half_wheelbase_m);
@@ -203,88 +255,18 @@ impl Law {
         let g = now.gravity_m_s2;
         match self {
             Self::WheelSlip { .. } => ("m_s", wheel_excess_m_s),
-            Self::AuxiliaryConstant { .. } | Self::AuxiliarySwitched { .. } | Self::AuxiliaryByCold { .. } => {
-                ("w", push.power_w)
+            Self::AuxiliaryConstant { .. }
+            | Self::AuxiliarySwitched { .. }
+            | Self::AuxiliaryByCold { .. } => ("w", push.power_w),
+            Self::BatteryResistance { resistance_ohm } => {
+                ("w", resistance_ohm * now.current_a * now.current_a)
             }
-            Self::BatteryResistance { resistance_ohm } => ("w", resistance_ohm * now.current_a * now.current_a),
             Self::Mass { .. } | Self::PayloadChange { .. } | Self::RotatingInertia { .. } => {
                 let inertia_n = (push.mass_kg + push.turning_kg) * now.acceleration_m_s2;
                 ("n", -inertia_n - push.mass_kg * g * now.ground_share)
             }
             Self::Grade { .. } | Self::GradeConstant { .. } => ("n", -now.mass_kg * g * push.sin_slope),
             _ => ("n", push.forward_n),
-        }
-    }
-
-    /// Its parameters, where it has any that are numbers.
-    pub fn told(&self) -> Vec<Told> {
-        match self {
-            Self::Wind { speed_m_s, from_rad } => {
-                vec![told("speed_m_s", *speed_m_s, "m/s"), told("from_rad", *from_rad, "rad")]
-            }
-            Self::GradeConstant { grade } => vec![told("grade", *grade, "1")],
-            Self::RotatingInertia { rotating_mass_kg } => vec![told("rotating_mass_kg", *rotating_mass_kg, "kg")],
-            Self::Mass { extra_mass_kg } => vec![told("extra_mass_kg", *extra_mass_kg, "kg")],
-            Self::AerodynamicDrag { extra_area_m2 } => vec![told("extra_area_m2", *extra_area_m2, "m²")],
-            Self::RollingResistance { coefficient } => vec![told("coefficient", *coefficient, "1")],
-            Self::TyreWarmUp { cold_coefficient, time_constant_s } => vec![
-                told("cold_coefficient", *cold_coefficient, "1"),
-                told("time_constant_s", *time_constant_s, "s"),
-            ],
-            Self::TyreCold { coefficient_per_k, .. } => {
-                vec![told("coefficient_per_k", *coefficient_per_k, "1/K")]
-            }
-            Self::Multipass { coefficient, factor } => {
-                vec![told("coefficient", *coefficient, "1"), told("factor", *factor, "1")]
-            }
-            Self::NeutralDrag { force_n, viscous_n_s_m } => {
-                vec![told("force_n", *force_n, "N"), told("viscous_n_s_m", *viscous_n_s_m, "N s/m")]
-            }
-            Self::DrivelineTemperature { cold_force_n, cold_viscous_n_s_m, time_constant_s } => vec![
-                told("cold_force_n", *cold_force_n, "N"),
-                told("cold_viscous_n_s_m", *cold_viscous_n_s_m, "N s/m"),
-                told("time_constant_s", *time_constant_s, "s"),
-            ],
-            Self::BrakeDrag { force_n } => vec![told("force_n", *force_n, "N")],
-            Self::CorneringDrag { cornering_stiffness_n_per_rad } => {
-                vec![told("cornering_stiffness_n_per_rad", *cornering_stiffness_n_per_rad, "N/rad")]
-            }
-            Self::LoadDependence { exponent, .. } => vec![told("exponent", *exponent, "1")],
-            Self::DrawbarLoad { force_n, linear_n_s_m, from_s, to_s } => vec![
-                told("force_n", *force_n, "N"),
-                told("linear_n_s_m", *linear_n_s_m, "N s/m"),
-                told("from_s", *from_s, "s"),
-                told("to_s", *to_s, "s"),
-            ],
-            Self::SpeedThreshold { force_n, threshold_m_s, width_m_s } => vec![
-                told("force_n", *force_n, "N"),
-                told("threshold_m_s", *threshold_m_s, "m/s"),
-                told("width_m_s", *width_m_s, "m/s"),
-            ],
-            Self::DrivelineEfficiency { loss } => vec![told("loss", *loss, "1")],
-            Self::VariatorLoss { loss, node_m_s } => {
-                vec![told("loss", *loss, "1"), told("node_speed_m_s", *node_m_s, "m/s")]
-            }
-            Self::ShiftTransient { force_n, speed_m_s, width_m_s } => vec![
-                told("force_n", *force_n, "N"),
-                told("speed_m_s", *speed_m_s, "m/s"),
-                told("width_m_s", *width_m_s, "m/s"),
-            ],
-            Self::WheelSlip { coefficient } => vec![told("coefficient", *coefficient, "1")],
-            Self::AuxiliaryConstant { power_w } => vec![told("power_w", *power_w, "W")],
-            Self::AuxiliaryByCold { freezing_power_w, balance_temperature_c } => vec![
-                told("freezing_power_w", *freezing_power_w, "W"),
-                told("balance_temperature_c", *balance_temperature_c, "°C"),
-            ],
-            Self::BatteryResistance { resistance_ohm } => vec![told("resistance_ohm", *resistance_ohm, "ohm")],
-            Self::Other(law) => law.told(),
-            // The speed law's parameters move with the speed they refer to; the rest are functions of place or time.
-            Self::RollingSpeedLaw { .. }
-            | Self::Grade { .. }
-            | Self::PayloadChange { .. }
-            | Self::SoftGround { .. }
-            | Self::Braking { .. }
-            | Self::AuxiliarySwitched { .. } => Vec::new(),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 mod draw;
 mod listed;
+mod told;
 mod unlisted;
 
 pub use draw::{Setting, ask, draw, listed_of, pair_of, unlisted_of};
@@ -98,6 +99,6 @@ pub struct Told {
     pub unit: String,
 }
 
-pub(crate) fn told(name: &str, value: f64, unit: &str) -> Told {
+pub(crate) fn parameter(name: &str, value: f64, unit: &str) -> Told {
     Told { name: name.to_owned(), value, unit: unit.to_owned() }
 }

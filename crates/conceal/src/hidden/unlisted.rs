@@ -1,6 +1,6 @@
 //! Causes that no list holds: whoever finds them has to write the equation.
 
-use super::{Now, Told, told};
+use super::{Now, Told, parameter};
 use std::f64::consts::TAU;
 
 /// A law without a name.
@@ -56,22 +56,22 @@ impl Unlisted {
     pub fn told(&self) -> Vec<Told> {
         match *self {
             Self::FadingWave { force_n, wavelength_m, phase_rad, fade_m } => vec![
-                told("amplitude_n", force_n, "N"),
-                told("wavelength_m", wavelength_m, "m"),
-                told("phase_rad", phase_rad, "rad"),
-                told("fade_m", fade_m, "m"),
+                parameter("amplitude_n", force_n, "N"),
+                parameter("wavelength_m", wavelength_m, "m"),
+                parameter("phase_rad", phase_rad, "rad"),
+                parameter("fade_m", fade_m, "m"),
             ],
             Self::Lug { force_n, wavelength_m } => {
-                vec![told("amplitude_n", force_n, "N"), told("wavelength_m", wavelength_m, "m")]
+                vec![parameter("amplitude_n", force_n, "N"), parameter("wavelength_m", wavelength_m, "m")]
             }
             Self::Hysteresis { force_n, acceleration_m_s2 } => vec![
-                told("amplitude_n", force_n, "N"),
-                told("scale_acceleration_m_s2", acceleration_m_s2, "m/s²"),
+                parameter("amplitude_n", force_n, "N"),
+                parameter("scale_acceleration_m_s2", acceleration_m_s2, "m/s²"),
             ],
             Self::ThreeHalves { force_n, speed_m_s }
             | Self::Sticking { force_n, speed_m_s }
             | Self::Saturating { force_n, speed_m_s } => {
-                vec![told("amplitude_n", force_n, "N"), told("scale_speed_m_s", speed_m_s, "m/s")]
+                vec![parameter("amplitude_n", force_n, "N"), parameter("scale_speed_m_s", speed_m_s, "m/s")]
             }
         }
     }

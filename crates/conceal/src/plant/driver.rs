@@ -13,7 +13,8 @@ impl Goal {
     fn at(&self, time_s: f64) -> (f64, f64) {
         let Self::Follow(points) = self else { return (0.0, 0.0) };
         let next = points.partition_point(|point| point.0 <= time_s);
-        let (Some(before), Some(after)) = (next.checked_sub(1).map(|index| points[index]), points.get(next)) else {
+        let (Some(before), Some(after)) = (next.checked_sub(1).map(|index| points[index]), points.get(next))
+        else {
             let end = if next == 0 { points.first() } else { points.last() };
             return (end.map_or(0.0, |point| point.1), 0.0);
         };

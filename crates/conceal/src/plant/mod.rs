@@ -2,7 +2,7 @@
 //!
 //! M dv/dt   = F_creep − R(v) N − ½ ρ A v² − M g sin θ + ΣF_hidden        body
 //! m_w du/dt = F_drive − F_creep                                        rim of all wheels, m_w = Σ J / r²
-//! F_creep   = N (u − v) / (k v)                                        k the creep for a pull as great as the load
+//! F_creep   = N (u − v) / (k u)                                        k the creep for a pull as great as the load
 //! φ''       = ω² (γ dv/dt − φ) − 2 ζ ω φ'                              pitch, nose up
 //!
 //! Sources: Newton; slip in proportion to pull, Wong, *Theory of Ground Vehicles* (2008), section 1.4; a sprung body as

@@ -75,6 +75,7 @@ pub(crate) struct Begin {
 }
 
 /// Drives a run, a sample a step.
+#[allow(clippy::too_many_lines, reason = "one step, read from top to bottom")]
 pub(crate) fn drive(
     vehicle: &Vehicle,
     course: &Course,
@@ -88,7 +89,10 @@ pub(crate) fn drive(
     let g = vehicle.gravity_m_s2;
     let mut driver = Driver::new(load_kg, -0.25 * load_kg * g, 0.35 * load_kg * g);
     let v0 = begin.speed_m_s;
-    driver.settle(vehicle.ground.share(v0) * load_kg * g + 0.5 * vehicle.air_density_kg_m3 * vehicle.drag_area_m2 * v0 * v0);
+    driver.settle(
+        vehicle.ground.share(v0) * load_kg * g
+            + 0.5 * vehicle.air_density_kg_m3 * vehicle.drag_area_m2 * v0 * v0,
+    );
     let (mut v, mut u, mut x, mut a) = (v0, v0, begin.position_m, 0.0_f64);
     let (mut pitch, mut pitch_rate) = (0.0_f64, 0.0_f64);
     let mut charge = vehicle.electric.as_ref().map_or(f64::NAN, |electric| electric.charge);
@@ -142,7 +146,7 @@ pub(crate) fn drive(
         let air_n = 0.5 * vehicle.air_density_kg_m3 * vehicle.drag_area_m2 * v_mid * v_mid;
         let body_n = push.forward_n - ground_n - air_n - mass * g * push.sin_slope;
         // Creep by the implicit rule: w = u − v.
-        let damping = load_n / ((vehicle.creep + push.creep) * v.max(0.5));
+        let damping = load_n / ((vehicle.creep + push.creep) * u.max(0.5));
         let w = (u - v + STEP_S * (drive_n / turning - body_n / mass))
             / (1.0 + STEP_S * damping * (1.0 / turning + 1.0 / mass));
         let v_next = v + STEP_S * (body_n + damping * w) / mass;
@@ -168,7 +172,10 @@ pub(crate) fn drive(
             work_j,
             lost_j,
             kinetic_j: 0.5 * (mass * v * v + turning * u * u),
-            hidden: laws.iter().map(|law| law.amount(&Now { acceleration_m_s2: a_next, ..now }, u - v).1).collect(),
+            hidden: laws
+                .iter()
+                .map(|law| law.amount(&Now { acceleration_m_s2: a_next, ..now }, u - v).1)
+                .collect(),
             ..Sample::default()
         };
         if let Some(electric) = &vehicle.electric {

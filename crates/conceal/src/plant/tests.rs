@@ -89,7 +89,7 @@ fn wheels_creep_in_proportion_to_pull() {
     let samples = drive(&tractor(1e-9), &Course::default(), &[law], &plan, &begin(5.0), stop);
     let last = samples.last().unwrap();
     let expected = 0.2 * last.drive_n / (13_019.3 * 9.81);
-    let slip = last.wheel_speed_m_s / last.speed_m_s - 1.0;
+    let slip = 1.0 - last.speed_m_s / last.wheel_speed_m_s;
     assert!((slip / expected - 1.0).abs() < 0.01, "{slip} {expected}");
     assert!((last.drive_n / (0.069 * 1.18 * 13_019.3 * 9.81) - 1.0).abs() < 0.01);
 }
@@ -103,7 +103,8 @@ fn a_slope_is_felt_and_turns_with_the_direction() {
     let mut forces = Vec::new();
     for (reversed, sign) in [(false, 1.0), (true, -1.0)] {
         let begin = Begin { reversed, ..begin(5.0) };
-        let samples = drive(&tractor(1e-4), &Course::default(), &[law.clone()], &plan, &begin, stop);
+        let samples =
+            drive(&tractor(1e-4), &Course::default(), std::slice::from_ref(&law), &plan, &begin, stop);
         let last = samples.last().unwrap();
         assert!((last.specific_force_m_s2 / (sign * 9.81 * 0.03_f64.atan().sin()) - 1.0).abs() < 0.02);
         forces.push(last.drive_n);

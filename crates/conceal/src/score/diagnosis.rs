@@ -88,7 +88,6 @@ impl Diagnosis {
     pub fn read(path: &Path) -> Result<Self, ConcealError> {
         let text = std::fs::read_to_string(path)
             .map_err(|source| ConcealError::File { path: path.to_owned(), source })?;
-        serde_json::from_str(&text)
-            .map_err(|source| ConcealError::Json { path: path.to_owned(), source })
+        serde_json::from_str(&text).map_err(|source| ConcealError::Json { path: path.to_owned(), source })
     }
 }

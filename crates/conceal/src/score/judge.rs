@@ -70,28 +70,31 @@ pub struct Outcome {
 pub fn judge(truth: &Truth, diagnosis: &Diagnosis, along: &[Run], effects: &[Run]) -> Outcome {
     // What is true of every plant neither counts nor takes a place, unless it is what was hidden.
     let hidden = |id: &str| truth.hidden.iter().any(|cause| cause.id == id);
-    let known = |finding: &&Finding| !(truth.also_true.contains(&finding.id) && !hidden(&finding.id));
+    let known = |finding: &&Finding| !truth.also_true.contains(&finding.id) || hidden(&finding.id);
     let findings: Vec<&Finding> = diagnosis.findings.iter().filter(known).collect();
     let leading = truth.hidden.len();
     let found: Vec<Found> =
         truth.hidden.iter().map(|cause| became(cause, &findings, leading, &diagnosis.verdict)).collect();
     let claims = |kind: &str| -> Vec<String> {
-        let of = |finding: &&&Finding| {
-            finding.kind == kind && !hidden(&finding.id) && !names(finding, truth)
-        };
+        let of = |finding: &&&Finding| finding.kind == kind && !hidden(&finding.id) && !names(finding, truth);
         findings.iter().filter(of).map(|finding| finding.id.clone()).collect()
     };
     let mut parameters = Covered::default();
     for cause in &truth.hidden {
         if let Some(finding) = findings.iter().find(|finding| is(finding, &cause.id)) {
             for told in &cause.parameters {
-                count(&mut parameters, finding.parameters.iter().find(|one| one.name == told.name), told.value);
+                count(
+                    &mut parameters,
+                    finding.parameters.iter().find(|one| one.name == told.name),
+                    told.value,
+                );
             }
         }
     }
     let mut calibrated = Covered::default();
     for prior in truth.nominal.iter().filter(|prior| prior.free) {
-        let named = |one: &&Interval| one.name == prior.path || prior.path.ends_with(&format!(".{}", one.name));
+        let named =
+            |one: &&Interval| one.name == prior.path || prior.path.ends_with(&format!(".{}", one.name));
         count(&mut calibrated, diagnosis.calibrated.iter().find(named), prior.truth);
     }
     Outcome {
@@ -118,7 +121,8 @@ fn names(finding: &Finding, truth: &Truth) -> bool {
 
 fn became(cause: &Cause, findings: &[&Finding], leading: usize, verdict: &str) -> Found {
     let first = &findings[..findings.len().min(leading)];
-    let alternative = |finding: &&&Finding| finding.indistinguishable_from.iter().any(|other| other.id == cause.id);
+    let alternative =
+        |finding: &&&Finding| finding.indistinguishable_from.iter().any(|other| other.id == cause.id);
     if first.iter().any(|finding| is(finding, &cause.id)) {
         return if verdict == "cannot_tell" { Found::Honest } else { Found::Right };
     }
@@ -158,7 +162,15 @@ fn improvement(truth: &Truth, diagnosis: &Diagnosis) -> Option<f64> {
 
 /// All hidden physics of one unit together against all that was reconstructed in it.
 fn reconstruction(truth: &Truth, along: &[Run], effects: &[Run]) -> Option<Reconstruction> {
-    let unit = |column: &str| if column.ends_with("_w") { "_w" } else if column.contains("_m_s") { "_m_s" } else { "_n" };
+    let unit = |column: &str| {
+        if column.ends_with("_w") {
+            "_w"
+        } else if column.contains("_m_s") {
+            "_m_s"
+        } else {
+            "_n"
+        }
+    };
     let causes: Vec<&Cause> = truth.hidden.iter().filter(|cause| cause.class == "physics").collect();
     let suffix = unit(&causes.first()?.column);
     let (mut found, mut true_one) = (Vec::new(), Vec::new());

@@ -60,7 +60,10 @@ fn outcome(ids: &[&str], verdict: &str, findings: &str) -> Outcome {
 fn a_right_first_finding_counts_with_its_interval_and_its_improvement() {
     let right = outcome(&["wind"], "missing_physics", &finding("physics", "wind", ""));
     assert_eq!(right.found, [Found::Right]);
-    assert_eq!((right.parameters, right.calibrated), (Covered { hits: 1, trials: 1 }, Covered { hits: 1, trials: 1 }));
+    assert_eq!(
+        (right.parameters, right.calibrated),
+        (Covered { hits: 1, trials: 1 }, Covered { hits: 1, trials: 1 })
+    );
     // (0.33 − 0.06) / (0.33 − 0.03)
     assert!((right.improvement.unwrap() - 0.9).abs() < 1e-12);
     assert!(right.false_physics.is_empty());
@@ -80,7 +83,8 @@ fn an_honest_doubt_has_to_name_the_cause() {
 
 #[test]
 fn of_two_causes_both_have_to_lead() {
-    let findings = [("wind", ""), ("mass", ""), ("grade", "")].map(|(id, other)| finding("physics", id, other));
+    let findings =
+        [("wind", ""), ("mass", ""), ("grade", "")].map(|(id, other)| finding("physics", id, other));
     let two = outcome(&["wind", "grade"], "missing_physics", &findings.join(","));
     assert_eq!(two.found, [Found::Right, Found::Behind]);
     assert_eq!(two.false_physics, ["mass"]);
@@ -103,7 +107,8 @@ fn what_is_true_of_every_plant_takes_no_place() {
 
 #[test]
 fn an_angle_is_covered_a_turn_away() {
-    let interval = Interval { name: "from_rad".to_owned(), value: Some(0.0), ci95: Some([Some(-0.2), Some(0.2)]) };
+    let interval =
+        Interval { name: "from_rad".to_owned(), value: Some(0.0), ci95: Some([Some(-0.2), Some(0.2)]) };
     let mut covered = Covered::default();
     count(&mut covered, Some(&interval), 6.2);
     count(&mut covered, Some(&interval), 3.0);

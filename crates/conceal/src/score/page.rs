@@ -79,18 +79,28 @@ fn overall(text: &mut String, scored: &[Scored]) {
             outcome.found.iter().all(|found| good(*found) || *found == Found::Alternative)
         })
     };
-    row("two causes: both right or named as an alternative", (two.iter().filter(lenient).count(), two.len()), "");
+    row(
+        "two causes: both right or named as an alternative",
+        (two.iter().filter(lenient).count(), two.len()),
+        "",
+    );
     let empty = outcomes(&of(scored, "empty"));
     let alarm = |outcome: &&&Outcome| !outcome.claimed.is_empty();
     row("nothing hidden: a false alarm", (empty.iter().filter(alarm).count(), empty.len()), "≤ 1 in 60");
     let faults = of(scored, "artefact");
     let told_faults = outcomes(&faults);
     let physics = |outcome: &&&Outcome| !outcome.false_physics.is_empty() || outcome.verdict == "unlisted";
-    row("a sensor's fault: physics is claimed", (told_faults.iter().filter(physics).count(), told_faults.len()), "0 in 30");
+    row(
+        "a sensor's fault: physics is claimed",
+        (told_faults.iter().filter(physics).count(), told_faults.len()),
+        "0 in 30",
+    );
     row("a sensor's fault: named", ratio(&faults), "");
     let all: Vec<&Outcome> = scored.iter().filter_map(|one| one.outcome.as_ref().ok()).collect();
     let sum = |pick: fn(&Outcome) -> Covered| {
-        all.iter().fold((0, 0), |(hits, trials), outcome| (hits + pick(outcome).hits, trials + pick(outcome).trials))
+        all.iter().fold((0, 0), |(hits, trials), outcome| {
+            (hits + pick(outcome).hits, trials + pick(outcome).trials)
+        })
     };
     row("95 % intervals of causes cover", sum(|outcome| outcome.parameters), "90 to 98 %");
     row("95 % intervals of nominal parameters cover", sum(|outcome| outcome.calibrated), "90 to 98 %");
@@ -99,7 +109,11 @@ fn overall(text: &mut String, scored: &[Scored]) {
     row("90 % of the possible improvement on held-out runs", (enough, improved.len()), "");
     let unlisted = outcomes(&of(scored, "unlisted"));
     let close = |outcome: &&&Outcome| outcome.reconstruction.is_some_and(|force| force.r2 >= 0.9);
-    row("unlisted: held-out R² of the force at least 0.9", (unlisted.iter().filter(close).count(), unlisted.len()), "≥ 80 %");
+    row(
+        "unlisted: held-out R² of the force at least 0.9",
+        (unlisted.iter().filter(close).count(), unlisted.len()),
+        "≥ 80 %",
+    );
     let listed = |outcome: &&&Outcome| !outcome.false_physics.is_empty();
     row("unlisted: a listed cause is claimed", (unlisted.iter().filter(listed).count(), unlisted.len()), "");
     let _ = writeln!(text, "\nMedian share of the possible improvement: {}.\n", median(improved));
@@ -118,7 +132,10 @@ fn by(text: &mut String, scored: &[Scored], what: &str, key: impl Fn(&Scored, us
     }
     for (name, causes) in groups {
         let number = |wanted: Found| {
-            causes.iter().filter(|(one, index)| one.outcome.as_ref().is_ok_and(|of| of.found[*index] == wanted)).count()
+            causes
+                .iter()
+                .filter(|(one, index)| one.outcome.as_ref().is_ok_and(|of| of.found[*index] == wanted))
+                .count()
         };
         let forces: Vec<_> = causes
             .iter()
@@ -163,7 +180,8 @@ fn every(text: &mut String, scored: &[Scored]) {
         let _ = write!(text, "| {} | {} | {hidden} | ", one.name, one.truth.family);
         let _ = match &one.outcome {
             Ok(outcome) => {
-                let score: Vec<String> = outcome.found.iter().map(|found| format!("{found:?}").to_lowercase()).collect();
+                let score: Vec<String> =
+                    outcome.found.iter().map(|found| format!("{found:?}").to_lowercase()).collect();
                 let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.2}"));
                 writeln!(
                     text,

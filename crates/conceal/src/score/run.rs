@@ -55,7 +55,8 @@ pub fn all(
     for case in cases {
         let name = case.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let truth = Truth::read(&case)?;
-        if options.without_truth && truth.hidden.iter().all(|cause| cause.class != "physics" || cause.id == "unlisted")
+        if options.without_truth
+            && truth.hidden.iter().all(|cause| cause.class != "physics" || cause.id == "unlisted")
         {
             continue;
         }

@@ -42,8 +42,8 @@ mod tests {
 
     #[test]
     fn a_line_correlates_fully_and_a_constant_not_at_all() {
-        assert!((correlation(&[1.0, 2.0, 4.0], &[-1.0, -2.0, -4.0]) - 1.0).abs() < 1e-12);
-        assert!((correlation(&[1.0, 2.0, 4.0], &[1.0, 0.0, -2.0]) + 1.0).abs() < 1e-12);
+        assert!((correlation(&[1.0, 2.0, 4.0], &[-1.0, -2.0, -4.0]) + 1.0).abs() < 1e-12);
+        assert!((correlation(&[1.0, 2.0, 4.0], &[3.0, 5.0, 9.0]) - 1.0).abs() < 1e-12);
         assert!(correlation(&[1.0, 2.0], &[3.0, 3.0]).is_nan());
     }
 }

@@ -65,17 +65,35 @@ fn at(failure: Failure, path: &Path) -> Failure {
 
 /// Drives the model with every run and compares, in parallel; the order is that of the recording.
 pub fn drive(study: &Study, values: &[f64], what: &str, say: Say) -> Result<Vec<Pair>, Failure> {
+    drive_each(study, values, what, say).into_iter().collect()
+}
+
+/// As [`drive`], and where the user interrupts, the runs that were finished.
+pub fn drive_finished(study: &Study, values: &[f64], what: &str, say: Say) -> Result<Vec<Pair>, Failure> {
+    finished(drive_each(study, values, what, say))
+}
+
+/// What was finished before an interruption; the interruption itself where nothing was.
+pub fn finished<T>(all: Vec<Result<T, Failure>>) -> Result<Vec<T>, Failure> {
+    let mut kept = Vec::new();
+    for one in all {
+        match one {
+            Ok(one) => kept.push(one),
+            Err(Failure::Interrupted) => {}
+            Err(other) => return Err(other),
+        }
+    }
+    if kept.is_empty() && interrupted() { Err(Failure::Interrupted) } else { Ok(kept) }
+}
+
+fn drive_each(study: &Study, values: &[f64], what: &str, say: Say) -> Vec<Result<Pair, Failure>> {
     let bar = say.bar(what, study.runs.len());
-    let pairs = study
-        .runs
-        .par_iter()
-        .map(|run| {
-            let outcome = study.replay(run, values)?;
-            let pair = pair(run, outcome)?;
-            bar.inc(1);
-            Ok(pair)
-        })
-        .collect::<Result<Vec<_>, Failure>>();
+    let one = |run: &Measured| {
+        let pair = pair(run, study.replay(run, values)?);
+        bar.inc(1);
+        pair
+    };
+    let pairs = study.runs.par_iter().map(one).collect();
     bar.finish_and_clear();
     pairs
 }

@@ -7,6 +7,9 @@ mod bad_input;
 mod commands;
 #[path = "cli/help.rs"]
 mod help;
+#[cfg(unix)]
+#[path = "cli/interruption.rs"]
+mod interruption;
 #[path = "cli/large.rs"]
 mod large;
 #[path = "cli/scenarios.rs"]

@@ -7,7 +7,8 @@ use crate::output::Output;
 use crate::page::{self, short};
 use crate::say::Say;
 use crate::study_input::{StudyInput, given, speed_unit};
-use headland_calibrate::coastdown::{CoastDown, Curve, Estimate, Settings, SpeedUnit, Study};
+use headland_calibrate::coastdown::{CoastDown, Curve, Estimate, RunRow, Settings, SpeedUnit, Study};
+use headland_calibrate::statistics::median;
 use headland_recording::Recording;
 use serde::Serialize;
 use std::fmt::Write;
@@ -20,6 +21,8 @@ pub struct Document {
     recording: String,
     settings: Settings,
     assumed: Vec<String>,
+    /// Runs that something else than rolling may have slowed, one sentence each.
+    doubts: Vec<String>,
     notices: Vec<ToldNotice>,
 }
 
@@ -37,6 +40,11 @@ impl Analysis {
     /// What was found.
     pub fn result(&self) -> &CoastDown {
         &self.document.result
+    }
+
+    /// Runs that something else than rolling may have slowed.
+    pub fn doubts(&self) -> &[String] {
+        &self.document.doubts
     }
 
     /// What had to be assumed.
@@ -96,6 +104,7 @@ pub fn analyse(
         ));
     }
     let document = Document {
+        doubts: doubts(&result),
         result,
         recording: recording.path.display().to_string(),
         settings,
@@ -103,6 +112,22 @@ pub fn analyse(
         notices: held::told_notices(&recording.notices),
     };
     Ok(Analysis { document, curves: study.curves()?, samples: study.samples(unit) })
+}
+
+/// Runs that fit far worse than the middle one.
+fn doubts(result: &CoastDown) -> Vec<String> {
+    const FAR: f64 = 4.0;
+    let rms: Vec<f64> = result.runs.iter().map(|row| row.rms_m_s).collect();
+    let middle = median(&rms);
+    let doubt = |row: &RunRow| {
+        format!(
+            "`{}` fits {} times worse than the middle run: something else than a steady roll-out slowed it, such as \
+             brakes or another surface; look at its residual, and name the stretch that rolls in `segments`",
+            row.run,
+            short((row.rms_m_s / middle).round())
+        )
+    };
+    result.runs.iter().filter(|row| row.rms_m_s > FAR * middle).map(doubt).collect()
 }
 
 /// `0.0712 (0.0703 to 0.0721)`.
@@ -148,6 +173,9 @@ pub fn told(recording: &Recording, analysis: &Analysis) -> String {
     }
     for one in &result.left_out {
         let _ = writeln!(text, "  left out   {}", one.reason);
+    }
+    for sentence in analysis.doubts() {
+        let _ = writeln!(text, "  doubt    {sentence}");
     }
     for sentence in &result.null_space {
         let _ = writeln!(text, "  cannot tell  {sentence}");

@@ -1,7 +1,7 @@
 //! `headland compare`: replays a recording through a model and compares the two.
 
 use crate::arguments::CompareOptions;
-use crate::failure::Failure;
+use crate::failure::{Failure, interrupted};
 use crate::held::{self, Pair, ToldNotice};
 use crate::output::Output;
 use crate::page;
@@ -60,7 +60,7 @@ pub fn compare(registry: &Registry, options: &CompareOptions, say: Say) -> Resul
     let recording = held::read_recording(&options.held.recording, say)?;
     let study = held::study(&scenario, &recording, registry)?;
     let mut output = Output::new(options.held.out.as_deref(), &options.held.scenario)?;
-    let pairs = held::drive(&study, &study.start(), "replaying", say)?;
+    let pairs = held::drive_finished(&study, &study.start(), "replaying", say)?;
     let summary = held::summary(&pairs);
     let checks = wanted.iter().map(|wanted| summary.meets(wanted)).collect::<Result<Vec<_>, _>>()?;
     let notes = notes(&study.notes, &pairs);
@@ -86,6 +86,9 @@ pub fn compare(registry: &Registry, options: &CompareOptions, say: Say) -> Resul
     output.page("report.html", &page)?;
     picture::draw(picture::Wanted::of(options.rerun, options.view), &scenario, &traces, &pairs, &mut output)?;
     say.result(&told(&scenario, &recording, &document, &checks, &output), &document)?;
+    if interrupted() {
+        return Err(Failure::Interrupted);
+    }
     missed(&checks)
 }
 

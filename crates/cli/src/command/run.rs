@@ -2,6 +2,7 @@
 
 use crate::arguments::RunOptions;
 use crate::failure::{Failure, interrupted};
+use crate::held;
 use crate::output::Output;
 use crate::page;
 use crate::picture;
@@ -67,6 +68,9 @@ pub fn run(registry: &Registry, options: &RunOptions, say: Say) -> Result<(), Fa
     output.page("report.html", &page::run::page(&scenario, &simulated.runs, &simulated.summary.remarks)?)?;
     picture::draw(picture::Wanted::of(options.rerun, options.view), &scenario, &traces, &[], &mut output)?;
     say.result(&told(&scenario, &simulated.summary, took_ms, &output), &simulated.summary)?;
+    if interrupted() {
+        return Err(Failure::Interrupted);
+    }
     match simulated.summary.runs.iter().find_map(stopped) {
         Some(reason) => Err(Failure::Requirement(reason)),
         None => Ok(()),
@@ -84,7 +88,7 @@ pub fn simulate_all(scenario: &Scenario, registry: &Registry) -> Result<Simulate
     let plain = [RunSpec { id: "run".to_owned(), with: Vec::new() }];
     let specs = if scenario.runs.is_empty() { &plain[..] } else { &scenario.runs };
     let runs: Vec<(String, Outcome)> =
-        specs.par_iter().map(|spec| simulate_one(scenario, spec, registry)).collect::<Result<_, _>>()?;
+        held::finished(specs.par_iter().map(|spec| simulate_one(scenario, spec, registry)).collect())?;
     let summaries = runs.iter().map(|(id, outcome)| summary_of(id, outcome)).collect();
     let summary = Summary {
         schema: "headland.run/1",

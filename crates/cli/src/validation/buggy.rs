@@ -38,7 +38,7 @@ pub fn part(scenarios: &Path, seed: u64, say: Say) -> Result<String, Failure> {
             writeln!(text, "\nAll runs together: c_w {} (95 % interval in parentheses).", with_interval(c_w));
     }
     let _ = writeln!(text, "\n{}\n", answer(&analysis));
-    for sentence in result.null_space.iter().chain(analysis.assumed()) {
+    for sentence in analysis.doubts().iter().chain(&result.null_space).chain(analysis.assumed()) {
         let _ = writeln!(text, "- {sentence}");
     }
     Ok(text)

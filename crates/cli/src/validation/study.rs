@@ -1,7 +1,7 @@
 //! The coast-down study: ten simulated runs, one of them as far off as the study's own outlier.
 
 use super::table::table;
-use crate::command::coastdown::{self, with_interval};
+use crate::command::coastdown::{self, Analysis, with_interval};
 use crate::command::run::simulate_all;
 use crate::failure::Failure;
 use crate::held;
@@ -10,8 +10,9 @@ use crate::page::short;
 use crate::say::Say;
 use crate::staged;
 use crate::study_input::StudyInput;
-use headland_calibrate::coastdown::{Settings, SpeedUnit, TwoStage};
+use headland_calibrate::coastdown::{Estimate, Settings, SpeedUnit, TwoStage};
 use headland_plugin::Registry;
+use headland_recording::Recording;
 use headland_scenario::Scenario;
 use std::fmt::Write;
 use std::path::Path;
@@ -40,9 +41,7 @@ pub fn part(registry: &Registry, scenarios: &Path, seed: u64, say: Say) -> Resul
     // The logs are read; that their folder may stay behind must not hide what the reading said.
     let _ = std::fs::remove_dir_all(&folder);
     let recording = recording?;
-    let settings =
-        Settings { seed, speed_law_unit: Some(SpeedUnit::KilometresPerHour), ..Settings::default() };
-    let analysis = coastdown::analyse(&recording, StudyInput::new(&recording, &[])?, settings, say)?;
+    let analysis = analyse(&recording, seed, say)?;
     let result = analysis.result();
     let mut text = format!(
         "## The coast-down study\n\n{}. Simulated with c_w {} in all runs but the sixth, which was given {}, the median of \
@@ -54,15 +53,32 @@ pub fn part(registry: &Registry, scenarios: &Path, seed: u64, say: Say) -> Resul
     );
     if let Some(two) = &result.two_stage {
         text += &pools(two);
-    }
-    if let Some(c_w) = result.speed_law.as_ref().and_then(|law| law.fit.estimate("c_w")) {
+        let outliers: Vec<&str> =
+            two.runs.iter().filter(|run| run.outlier).map(|run| run.run.as_str()).collect();
+        let mut kept = recording.clone();
+        kept.runs.retain(|run| !outliers.contains(&run.id.as_str()));
+        let kept = analyse(&kept, seed, say)?;
+        let student =
+            |c_w: &Estimate| with_interval(&Estimate { interval_95: c_w.student_95, ..c_w.clone() });
         let _ = writeln!(
             text,
-            "\nThe fit of speed over time, all ten runs with their scatter, gives c_w {} (95 % interval in parentheses).\n",
-            with_interval(c_w)
+            "\nThe fit of speed over time gives c_w {} without the outlier and {} with it; 95 % intervals in parentheses, \
+             that of all runs by Student's t: one run so far from the others leaves no narrow one.\n",
+            c_w(&kept).map_or_else(String::new, with_interval),
+            c_w(&analysis).map_or_else(String::new, student),
         );
     }
     Ok(text)
+}
+
+fn analyse(recording: &Recording, seed: u64, say: Say) -> Result<Analysis, Failure> {
+    let settings =
+        Settings { seed, speed_law_unit: Some(SpeedUnit::KilometresPerHour), ..Settings::default() };
+    coastdown::analyse(recording, StudyInput::new(recording, &[])?, settings, say)
+}
+
+fn c_w(analysis: &Analysis) -> Option<&Estimate> {
+    analysis.result().speed_law.as_ref()?.fit.estimate("c_w")
 }
 
 fn pools(two: &TwoStage) -> String {

@@ -51,6 +51,9 @@ pub fn calibrated(registry: &Registry, scenario: &Path, recording: &Path, say: S
     Ok(Told { scenario, recording, before, after, calibration })
 }
 
+/// One more column of a table of runs: its name and its cells.
+pub type More<'a> = (&'a str, &'a dyn Fn(&Pair) -> String);
+
 impl Told {
     /// The fitted value of a parameter, by the end of its path.
     pub fn value(&self, name: &str) -> f64 {
@@ -99,7 +102,7 @@ impl Told {
     }
 
     /// One row a run: the RMSE of each signal and the error of a total.
-    pub fn runs(&self, of: &str, more: &[(&str, &dyn Fn(&Pair) -> String)]) -> String {
+    pub fn runs(&self, of: &str, more: &[More]) -> String {
         let signals: Vec<&str> =
             self.calibration.signals.iter().map(|signal| signal.channel.as_str()).collect();
         let unit = |signal: &crate::fitted::Signal| format!("RMSE `{}` {}", signal.channel, signal.unit);

@@ -223,26 +223,3 @@ fn a_calibration_has_the_same_bits_at_any_number_of_threads() {
     };
     assert_eq!(make("1"), make("2"));
 }
-
-#[cfg(unix)]
-#[test]
-fn an_interruption_keeps_what_is_finished_and_ends_with_130() {
-    use std::os::unix::process::ExitStatusExt;
-    let place = Place::new();
-    place.write("scenario.ron", &super::help::SCENARIO.replace("for_s: 20", "for_s: 80000").replace("coefficient: 0.02", "coefficient: 0.001").replace("step_s: 0.05", "step_s: 0.0005").replace("    free", "    runs: [(id: \"a\", with: {}), (id: \"b\", with: {}), (id: \"c\", with: {}), (id: \"d\", with: {})],\n    free"));
-    place.write("out_kept", "");
-    let mut child = headland()
-        .args(["run", &place.path("scenario.ron"), "--out", &place.path("out"), "--threads", "1"])
-        .spawn()
-        .unwrap();
-    std::thread::sleep(std::time::Duration::from_millis(400));
-    let interrupt = |child: &std::process::Child| {
-        std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    };
-    interrupt(&child);
-    std::thread::sleep(std::time::Duration::from_millis(300));
-    // Whoever insists is let go at once.
-    interrupt(&child);
-    let status = child.wait().unwrap();
-    assert_eq!((status.code(), status.signal()), (Some(130), None));
-}

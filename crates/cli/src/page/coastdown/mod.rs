@@ -1,12 +1,13 @@
 //! The page of a coast-down analysis.
 
+mod runs;
+mod two_stage;
+
 use super::short;
 use crate::command::coastdown::{Analysis, with_interval};
-use headland_calibrate::coastdown::{CoastDown, Curve, Estimate, TwoStage};
+use headland_calibrate::coastdown::{CoastDown, Curve, Estimate};
 use headland_recording::Recording;
-use headland_report::{
-    Axis, Cell, Cumulative, Figure, Item, Line, Lines, Plot, Report, Section, Series, Steps, Table,
-};
+use headland_report::{Axis, Cell, Figure, Item, Line, Lines, Plot, Report, Section, Series, Table};
 
 /// Makes the page.
 pub fn page(recording: &Recording, analysis: &Analysis) -> Report {
@@ -20,11 +21,11 @@ pub fn page(recording: &Recording, analysis: &Analysis) -> Report {
         )
     );
     let mut report = Report::new(recording.about.clone(), lede)
-        .with(glance(result))
+        .with(glance(analysis))
         .with(fit(analysis))
-        .with(runs(result));
+        .with(runs::runs(result));
     if let Some(two) = &result.two_stage {
-        report = report.with(two_stage(two, analysis));
+        report = report.with(two_stage::two_stage(two, analysis));
     }
     if let Some(section) = super::notices(&recording.notices, analysis.assumed()) {
         report = report.with(section);
@@ -32,7 +33,8 @@ pub fn page(recording: &Recording, analysis: &Analysis) -> Report {
     report
 }
 
-fn glance(result: &CoastDown) -> Section {
+fn glance(analysis: &Analysis) -> Section {
+    let result = analysis.result();
     let mut figures = Vec::new();
     if let Some(law) = &result.speed_law {
         for estimate in &law.fit.estimates {
@@ -44,9 +46,10 @@ fn glance(result: &CoastDown) -> Section {
         figures.push(Figure::text("c_w of the two-stage method", short(two.kept.by_samples)).note(words));
     }
     let mut section = Section::new("At a glance").with(Item::Figures(figures));
-    let told: Vec<String> = result
-        .null_space
+    let told: Vec<String> = analysis
+        .doubts()
         .iter()
+        .chain(&result.null_space)
         .cloned()
         .chain(result.left_out.iter().map(|one| one.reason.clone()))
         .collect();
@@ -175,134 +178,4 @@ fn forces(result: &CoastDown) -> Plot {
         "Resistance on level ground in calm air",
         Lines::over(Axis::of("speed_m_s"), Axis::new("resistance", "N"), vec![series]),
     )
-}
-
-fn runs(result: &CoastDown) -> Section {
-    let run = |row: &headland_calibrate::coastdown::RunRow| {
-        vec![
-            Cell::from(row.run.clone()),
-            Cell::from(row.path.clone().unwrap_or_default() + if row.reversed { " (back)" } else { "" }),
-            (3.6 * row.initial_m_s).into(),
-            row.duration_s.into(),
-            row.apparent_resistance_n.into(),
-            row.c_w.unwrap_or(f64::NAN).into(),
-            row.c_w_apparent.unwrap_or(f64::NAN).into(),
-            row.offset_in_sd.into(),
-            row.rms_m_s.into(),
-        ]
-    };
-    let table = Table {
-        title: "Runs".to_owned(),
-        columns: vec![
-            Axis::new("run", ""),
-            Axis::new("path", ""),
-            Axis::new("from", "km/h"),
-            Axis::new("duration", "s"),
-            Axis::new("resistance", "N"),
-            Axis::new("own c_w", ""),
-            Axis::new("apparent c_w", ""),
-            Axis::new("off", "σ"),
-            Axis::new("RMS", "m/s"),
-        ],
-        rows: result.runs.iter().map(run).collect(),
-    };
-    let words = "Of each run alone: its c_w with grade and wind of the path taken out, and as if the path were level and \
-                 calm; how far it lies off the pool; the root mean square of its residual.";
-    let mut section = Section::new("Runs and pairs").words(words).with(table);
-    if result.pairs.is_empty() {
-        return section.with(Item::Words(
-            "No two runs drove the same path in opposite directions, so that grade, wind and rolling resistance are not \
-             separated."
-                .to_owned(),
-        ));
-    }
-    let pair = |row: &headland_calibrate::coastdown::PairRow| {
-        vec![
-            Cell::from(format!("{} and {}", row.forward, row.reversed)),
-            row.resistance_n.into(),
-            row.asymmetry_n.into(),
-            (100.0 * row.as_grade).into(),
-            row.as_headwind_m_s.unwrap_or(f64::NAN).into(),
-            row.c_w.unwrap_or(f64::NAN).into(),
-        ]
-    };
-    section = section.with(Table {
-        title: "Pairs in opposite directions".to_owned(),
-        columns: vec![
-            Axis::new("runs", ""),
-            Axis::new("resistance", "N"),
-            Axis::new("difference by direction", "N"),
-            Axis::new("read as grade", "%"),
-            Axis::new("read as head wind", "m/s"),
-            Axis::new("c_w", ""),
-        ],
-        rows: result.pairs.iter().map(pair).collect(),
-    });
-    section
-}
-
-fn two_stage(two: &TwoStage, analysis: &Analysis) -> Section {
-    let run = |one: &headland_calibrate::coastdown::RunCoefficient| {
-        vec![
-            Cell::from(one.run.clone()),
-            Cell::Number(one.samples as f64),
-            Cell::Number(one.kept as f64),
-            one.median.into(),
-            one.mean.into(),
-            one.weight.into(),
-            Cell::from(if one.outlier { "outlier" } else { "" }),
-        ]
-    };
-    let runs = Table {
-        title: "First stage: samples to runs".to_owned(),
-        columns: ["run", "samples", "within 5 to 95 %", "median", "mean", "weight", ""]
-            .map(|name| Axis::new(name, ""))
-            .to_vec(),
-        rows: two.runs.iter().map(run).collect(),
-    };
-    let mut rows = Vec::new();
-    let with_rotating = analysis.result().two_stage_with_rotating_mass.as_ref();
-    for (mass, two) in [("as published", Some(two)), ("with rotating mass", with_rotating)] {
-        let Some(two) = two else { continue };
-        for (what, pool) in [("without outliers", &two.kept), ("all runs", &two.all)] {
-            rows.push(vec![
-                Cell::from(format!("{mass}, {what}")),
-                pool.by_samples.into(),
-                pool.by_runs.into(),
-                pool.by_medians.into(),
-            ]);
-        }
-    }
-    let pools = Table {
-        title: "Second stage: runs to one coefficient".to_owned(),
-        columns: ["pool", "by samples", "by run means", "by run medians"]
-            .map(|name| Axis::new(name, ""))
-            .to_vec(),
-        rows,
-    };
-    let words = "A coefficient a sample from differentiated speed, a median a run, a pool of the runs that are no \
-                 outliers. The study leaves open whether samples or runs are pooled, so both stand here.";
-    Section::new("The two-stage method")
-        .words(words)
-        .with(pools)
-        .with(runs)
-        .with(distribution(&analysis.samples))
-}
-
-fn distribution(samples: &[(String, Vec<f64>)]) -> Plot {
-    let steps = samples
-        .iter()
-        .map(|(run, values)| {
-            let mut x: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-            x.sort_by(f64::total_cmp);
-            // The outermost samples are what differentiation makes of noise; they would squeeze the rest.
-            let outer = x.len() / 20;
-            let all = x.len() as f64;
-            let probability = (outer..x.len() - outer).map(|rank| (rank + 1) as f64 / all).collect();
-            Steps { name: run.clone(), x: x[outer..x.len() - outer].to_vec(), probability, band: None }
-        })
-        .collect();
-    let cumulative = Cumulative { axis: Axis::new("c_w of a sample", ""), steps };
-    Plot::new("Cumulative probability of the coefficient of a sample", cumulative)
-        .words("Between the 5th and the 95th percentile, which is what the method keeps.")
 }

@@ -203,7 +203,12 @@ fn assemble(
         hidden,
         also_true,
         nominal: plan.nominal.priors.clone(),
-        speed_noise_m_s: plan.sensor("speed_m_s").map_or(0.0, |sensor| sensor.white.hypot(sensor.drift)),
+        noise: plan
+            .channels
+            .iter()
+            .map(|channel| (channel.name.to_owned(), channel.sensor.white.hypot(channel.sensor.drift)))
+            .filter(|(_, noise)| *noise > 0.0)
+            .collect(),
         force_noise_n: plan.force_noise_n(),
         power_noise_w: plan.power_noise_w(),
         held_out: plan.runs.iter().filter(|run| run.held_out).map(|run| run.id.clone()).collect(),

@@ -3,6 +3,7 @@
 use crate::error::ConcealError;
 use crate::hidden::Told;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// A parameter of the nominal scenario.
@@ -60,8 +61,8 @@ pub struct Truth {
     pub also_true: Vec<String>,
     /// Parameters of the scenario.
     pub nominal: Vec<Prior>,
-    /// Noise of a sample of speed [m/s].
-    pub speed_noise_m_s: f64,
+    /// Noise of a sample of each channel that has any, in its unit.
+    pub noise: BTreeMap<String, f64>,
     /// Noise of the balance of forces at one second [N].
     pub force_noise_n: f64,
     /// Noise of the balance of the battery at one second [W]; 0 where there is none.

@@ -1,4 +1,4 @@
-//! An electric car on the road: motor torque and speed, battery voltage and current, 200 s at 10 Hz.
+//! An electric car on the road: motor torque and speed, battery voltage and current, 170 s at 20 Hz.
 
 use super::{Logger, Needs, channel, flag, prior, ramps, rounded};
 use crate::course::Course;
@@ -107,7 +107,7 @@ pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
         course: Course { heading_rad: dice.within(0.0, TAU), bends: Vec::new() },
         channels: channels(needs, dice),
         runs: runs(needs, dice),
-        rate_hz: 10.0,
+        rate_hz: 20.0,
         before_s: 3.0,
         nominal,
     }
@@ -115,7 +115,7 @@ pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
 
 fn channels(needs: &Needs, dice: &mut Dice) -> Vec<Channel> {
     let logger = Logger { lag_s: dice.within(0.02, 0.04), hold_s: 0.0 };
-    let speed_noise = dice.within(0.02, 0.05);
+    let speed_noise = dice.within(0.012, 0.03);
     let exact = |step: f64| Sensor { step, ..Sensor::default() };
     let mut channels = vec![
         channel(

@@ -230,7 +230,7 @@ pub fn draw(law: &str, plan: &Plan, dice: &mut Dice) -> Law {
         },
         "cornering_drag" => Law::CorneringDrag {
             // So that the tightest bend at the middle speed costs some per cent of the weight.
-            cornering_stiffness_n_per_rad: weight * dice.within(1.2, 4.0),
+            cornering_stiffness_n_per_rad: weight * dice.within(0.7, 2.5),
         },
         "load_dependence" => Law::LoadDependence {
             coefficient: share,

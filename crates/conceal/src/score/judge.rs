@@ -105,7 +105,7 @@ pub fn judge(truth: &Truth, diagnosis: &Diagnosis, along: &[Run], effects: &[Run
         false_artefacts: claims("artefact"),
         parameters,
         calibrated,
-        reconstruction: reconstruction(truth, along, effects),
+        reconstruction: reconstruction(truth, diagnosis, along, effects),
         improvement: improvement(truth, diagnosis),
     }
 }
@@ -153,15 +153,20 @@ fn count(covered: &mut Covered, interval: Option<&Interval>, truth: f64) {
 fn improvement(truth: &Truth, diagnosis: &Diagnosis) -> Option<f64> {
     /// A mismatch below this many times the noise has nothing to improve.
     const WORTH: f64 = 1.5;
-    let fit = diagnosis.fit.as_ref().filter(|fit| fit.signal == "speed_m_s")?;
+    let fit = diagnosis.fit.as_ref()?;
+    let noise = *truth.noise.get(&fit.signal)?;
     let held_out = fit.held_out.as_ref()?;
     let (before, after) = (held_out.rmse_before?, held_out.rmse_after?);
-    let noise = truth.speed_noise_m_s;
     (before > WORTH * noise).then(|| (before - after) / (before - noise))
 }
 
 /// All hidden physics of one unit together against all that was reconstructed in it.
-fn reconstruction(truth: &Truth, along: &[Run], effects: &[Run]) -> Option<Reconstruction> {
+fn reconstruction(
+    truth: &Truth,
+    diagnosis: &Diagnosis,
+    along: &[Run],
+    effects: &[Run],
+) -> Option<Reconstruction> {
     let unit = |column: &str| {
         if column.ends_with("_w") {
             "_w"
@@ -173,6 +178,11 @@ fn reconstruction(truth: &Truth, along: &[Run], effects: &[Run]) -> Option<Recon
     };
     let causes: Vec<&Cause> = truth.hidden.iter().filter(|cause| cause.class == "physics").collect();
     let suffix = unit(&causes.first()?.column);
+    // What a faulty sensor amounts to is no physics.
+    let of_a_sensor = |column: &str| {
+        let mut faults = diagnosis.findings.iter().filter(|finding| finding.kind == "artefact");
+        faults.any(|finding| column.strip_prefix(&finding.id).is_some_and(|rest| rest.starts_with('_')))
+    };
     let (mut found, mut true_one) = (Vec::new(), Vec::new());
     for run in along.iter().filter(|run| truth.held_out.contains(&run.id)) {
         let Some(effect) = effects.iter().find(|effect| effect.id == run.id) else { continue };
@@ -181,7 +191,12 @@ fn reconstruction(truth: &Truth, along: &[Run], effects: &[Run]) -> Option<Recon
             .channels()
             .iter()
             .map(|channel| channel.name.as_str())
-            .filter(|name| name.ends_with(suffix) && !name.contains("_low") && !name.contains("_high"))
+            .filter(|name| {
+                name.ends_with(suffix)
+                    && !name.contains("_low")
+                    && !name.contains("_high")
+                    && !of_a_sensor(name)
+            })
             .collect();
         if columns.is_empty() {
             continue;

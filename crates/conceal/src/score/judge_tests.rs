@@ -29,7 +29,7 @@ fn truth(ids: &[&str]) -> Truth {
             bounds: (1e4, 2e4),
             free: true,
         }],
-        speed_noise_m_s: 0.03,
+        noise: [("speed_m_s".to_owned(), 0.03)].into(),
         force_noise_n: 100.0,
         power_noise_w: 0.0,
         held_out: vec!["r2".to_owned()],
@@ -124,7 +124,13 @@ fn a_force_that_is_half_as_large_has_its_correlation_and_its_slope() {
         trace.push(name, values, Origin::Measured).unwrap();
         Run { id: "r2".to_owned(), trace }
     };
-    let half = reconstruction(&truth(&["wind"]), &[run("wind_n", 100.0)], &[run("wind_n", 50.0)]).unwrap();
+    let half = {
+        let mut found = run("wind_n", 50.0);
+        let scale = vec![1e6; found.trace.len()];
+        found.trace.push("speed_scale_n", scale, Origin::Measured).unwrap();
+        let said = said("both", &finding("artefact", "speed_scale", ""));
+        reconstruction(&truth(&["wind"]), &said, &[run("wind_n", 100.0)], &[found]).unwrap()
+    };
     assert!((half.correlation - 1.0).abs() < 1e-9 && (half.slope - 0.5).abs() < 1e-9);
     assert!((half.r2 - 0.75).abs() < 0.01, "{}", half.r2);
 }

@@ -50,8 +50,9 @@ pub fn draw(id: &'static str, plan: &Plan, dice: &mut Dice) -> Artefact {
             let late = if electric { dice.within(0.25, 0.8) } else { dice.within(0.12, 0.4) };
             of(vec!["speed_m_s"], late, "latency_s", "s")
         }
-        "speed_scale" => of(vec!["speed_m_s"], dice.sign() * dice.within(0.02, 0.06), "scale", "1"),
-        "force_scale" => of(vec![drive], dice.sign() * dice.within(0.05, 0.14), "scale", "1"),
+        // Scales are told as a recording describes them: measured over true.
+        "speed_scale" => scaled(of(vec!["speed_m_s"], dice.sign() * dice.within(0.02, 0.06), "scale", "1")),
+        "force_scale" => scaled(of(vec![drive], dice.sign() * dice.within(0.05, 0.14), "scale", "1")),
         "accelerometer_bias" => {
             of(vec!["specific_force_m_s2"], dice.sign() * dice.within(0.06, 0.3), "bias_m_s2", "m/s²")
         }
@@ -84,4 +85,11 @@ pub fn draw(id: &'static str, plan: &Plan, dice: &mut Dice) -> Artefact {
             Artefact { channels: vec![channel], spells, ..none }
         }
     }
+}
+
+fn scaled(mut fault: Artefact) -> Artefact {
+    for told in &mut fault.told {
+        told.value += 1.0;
+    }
+    fault
 }

@@ -88,6 +88,8 @@ impl Fit {
 /// Weighted residuals, one list for each cluster, of the same length at every point.
 pub type Residuals = Vec<Vec<f64>>;
 
+/// Clusters to a parameter from which on their scatter can be trusted.
+const FEW_CLUSTERS: usize = 3;
 const MOST_STEPS: usize = 25;
 /// A search ends when a step promises less than this share of the cost.
 const LEAST_DECREASE: f64 = 1e-6;
@@ -288,7 +290,7 @@ fn conclude(
     };
     // What a bound holds is not estimated: the others are judged as if it were known.
     let open: Vec<usize> = (0..count).filter(|index| !at_bound(*index)).collect();
-    let judged = Judged::new(&sources, &open, cost_scale(here));
+    let judged = Judged::new(&sources, &open, here);
     let estimates = parameters.iter().enumerate().map(|(index, parameter)| {
         let (standard_error, ci95) = match open.iter().position(|other| *other == index) {
             Some(place) => judged.interval(place, here.x[index]),
@@ -325,10 +327,12 @@ struct Judged {
     plain: Option<DMatrix<f64>>,
     scattered: f64,
     size: usize,
+    sources: usize,
+    residuals: f64,
 }
 
 impl Judged {
-    fn new(sources: &[Cluster], open: &[usize], scattered: f64) -> Self {
+    fn new(sources: &[Cluster], open: &[usize], here: &Here) -> Self {
         let size = open.len();
         let part = |cluster: &Cluster| Cluster {
             information: DMatrix::from_fn(size, size, |row, column| {
@@ -338,18 +342,32 @@ impl Judged {
         };
         let sources: Vec<Cluster> = sources.iter().map(part).collect();
         let information = sources.iter().fold(DMatrix::zeros(size, size), |sum, one| sum + &one.information);
-        Self { pooled: pool(&sources), plain: crate::clusters::scaled_inverse(&information), scattered, size }
+        let residuals: usize = here.residuals.iter().map(Vec::len).sum();
+        Self {
+            pooled: pool(&sources),
+            plain: crate::clusters::scaled_inverse(&information),
+            scattered: cost_scale(here),
+            size,
+            sources: here.residuals.len(),
+            residuals: residuals.saturating_sub(size).max(1) as f64,
+        }
     }
 
     /// Standard error and 95 % interval of a value.
     fn interval(&self, place: usize, value: f64) -> (f64, [f64; 2]) {
         let robust = self.pooled.as_ref().map_or(f64::INFINITY, |pooled| pooled.covariance[(place, place)]);
         let plain = self.plain.as_ref().map_or(f64::INFINITY, |plain| plain[(place, place)] * self.scattered);
+        // Fewer clusters than this to a parameter say nothing of their scatter: the weights are believed.
+        let few = self.sources < FEW_CLUSTERS * self.size;
         // Few clusters can agree by chance; what the residuals themselves say is the floor.
-        let variance = robust.max(plain);
+        let variance = if few { plain } else { robust.max(plain) };
         let direction = DVector::from_fn(self.size, |row, _| f64::from(row == place));
         let degrees = self.pooled.as_ref().map_or(f64::NAN, |pooled| pooled.degrees_of_freedom(&direction));
-        let degrees = if degrees.is_finite() { degrees.max(1.0) } else { 1.0 };
+        let degrees = match (few, degrees.is_finite()) {
+            (true, _) => self.residuals,
+            (false, true) => degrees.max(1.0),
+            (false, false) => 1.0,
+        };
         if variance.is_finite() {
             (variance.sqrt(), student_interval(value, variance, degrees, 0.0, 0.95).0)
         } else {

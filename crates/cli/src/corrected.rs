@@ -36,7 +36,8 @@ fn corrected(text: &str, (channel, latency_s, scale, bias): &Correction) -> Resu
     }
     let sensor = format!("sensor: (latency_s: {latency_s:?}, scale: {scale:?}, bias: {bias:?})");
     let is = |node: &&Node| {
-        node.field("is").is_some_and(|field| matches!(&field.value.shape, Shape::Text(name) if name == channel))
+        node.field("is")
+            .is_some_and(|field| matches!(&field.value.shape, Shape::Text(name) if name == channel))
     };
     let (at, end, piece) = match &channels {
         Some((values, span)) => match values.iter().find(is) {
@@ -85,7 +86,9 @@ fn with_folder(text: &str, path: &Path) -> Result<String, Failure> {
     }
     // A variable stands at the beginning; what is relative is its default.
     let placed = match folder.split_once(":-") {
-        Some((variable, rest)) if folder.starts_with("${") => format!("{variable}:-{}/{rest}", beside.display()),
+        Some((variable, rest)) if folder.starts_with("${") => {
+            format!("{variable}:-{}/{rest}", beside.display())
+        }
         _ => beside.join(folder).display().to_string(),
     };
     Ok(text.replacen(&format!("{folder:?}"), &format!("{placed:?}"), 1))

@@ -64,6 +64,10 @@ pub struct Drive0 {
     pub measured: Measured,
     /// Smoothed speed and acceleration.
     pub motion: LocalFit,
+    /// Acceleration that the recorded force and the nominal model make [m/s²]; the recorded one where no force is known.
+    ///
+    /// Regressors are made of it: made of the recorded acceleration they would explain their own noise.
+    pub acceleration_m_s2: Vec<f64>,
     /// Position along the path [m].
     pub position_m: Vec<f64>,
     /// The ground that it drove over: runs of the same number share it.
@@ -149,6 +153,7 @@ pub fn drives(study: &Study, recording: &headland_recording::Recording, model: &
         let force_n = force(&measured.trace, model, &motion.value);
         all.push(Drive0 {
             position_m: Vec::new(),
+            acceleration_m_s2: motion.slope.clone(),
             motion,
             path,
             reversed: recorded.reversed,
@@ -365,7 +370,7 @@ pub fn change(kind: Kind, drive: &Drive0, before: &Said, after: &Said) -> Vec<f6
         Kind::Motion => (0..count)
             .map(|i| {
                 before.resistance_n[i] - after.resistance_n[i]
-                    + (before.effective_mass_kg[i] - after.effective_mass_kg[i]) * drive.motion.slope[i]
+                    + (before.effective_mass_kg[i] - after.effective_mass_kg[i]) * drive.acceleration_m_s2[i]
             })
             .collect(),
         Kind::Parity => minus(&before.slope_m_s2, &after.slope_m_s2),

@@ -77,10 +77,14 @@ impl<'a> Case<'a> {
             options,
         };
         case.nominal = case.said(scenario, &case.study.priors())?;
+        for (drive, said) in case.drives.iter_mut().zip(&case.nominal) {
+            accelerate(drive, said);
+        }
         case.kinds = kinds(&case.drives, &case.nominal);
         let around = case.around(&model);
-        let all = causes(&around);
+        let mut all = causes(&around);
         check_names(&all, registry, options)?;
+        bound(&mut all, registry);
         case.causes = all
             .into_iter()
             .filter(|cause| !options.without.iter().any(|id| id == cause.id))
@@ -232,6 +236,32 @@ impl<'a> Case<'a> {
             drives: drives || self.drives.iter().all(|drive| drive.force_n.is_none()),
             passes: passes.into_iter().max().unwrap_or(1),
             temperatures_k: (high - low).max(0.0),
+        }
+    }
+}
+
+/// The acceleration that recorded force and nominal model make, where the vehicle moves and the force is known.
+fn accelerate(drive: &mut Drive0, said: &Said) {
+    /// Below this speed friction at rest decides [m/s].
+    const SLOWEST_M_S: f64 = 0.4;
+    let Some(force) = &drive.force_n else { return };
+    for (index, acceleration) in drive.acceleration_m_s2.iter_mut().enumerate() {
+        let made = (force[index] - said.resistance_n[index]) / said.effective_mass_kg[index];
+        if made.is_finite() && drive.motion.value[index] > SLOWEST_M_S {
+            *acceleration = made;
+        }
+    }
+}
+
+/// A parameter that its effect does not let be negative is not searched below zero.
+fn bound(causes: &mut [Cause], registry: &Registry) {
+    use headland_plugin::Bound::{Efficiency, NotNegative, Positive};
+    for cause in causes {
+        let Some(card) = registry.effects.card(cause.id) else { continue };
+        for term in &mut cause.terms {
+            let parameter = card.parameters.iter().find(|parameter| parameter.name == term.name);
+            let positive = parameter.is_some_and(|one| matches!(one.bound, NotNegative | Positive | Efficiency));
+            term.positive |= positive;
         }
     }
 }

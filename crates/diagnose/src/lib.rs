@@ -29,7 +29,7 @@ pub use case::{Options, Progress};
 pub use error::DiagnoseError;
 pub use report::{
     Calibrated, Diagnosed, Diagnosis, FindingKind, FindingReport, Fit, FitRuns, Interval, ParameterReport, Rival,
-    Verdict,
+    Tried, Verdict,
 };
 
 pub(crate) use case::Case;

@@ -53,7 +53,7 @@ pub fn prove(case: &Case, balances: &[Balance], refined: &Refined) -> Result<Pro
     let mut drives = case.drives.clone();
     for cured in &artefacts {
         if let Some((value, _)) = cured.values.first() {
-            drives = corrected_on(case, drives, cured.cause.id, *value)?;
+            drives = corrected(&drives, cured.cause.id, *value)?;
         }
     }
     let effects = refined
@@ -98,11 +98,6 @@ pub fn prove(case: &Case, balances: &[Balance], refined: &Refined) -> Result<Pro
 
 fn by_path(refined: &Refined) -> bool {
     refined.causes.iter().any(|cured| cured.function.is_some())
-}
-
-fn corrected_on(case: &Case, drives: Vec<Drive0>, id: &str, value: f64) -> Result<Vec<Drive0>, DiagnoseError> {
-    let _ = drives;
-    corrected(case, id, value)
 }
 
 /// The signal by which before and after are told.
@@ -211,7 +206,7 @@ fn reconstruct(
     };
     let runs = if cured.cause.class == Class::Artefact {
         let value = cured.values.first().map_or(0.0, |(value, _)| *value);
-        let fixed = corrected(case, cured.cause.id, value)?;
+        let fixed = corrected(&case.drives, cured.cause.id, value)?;
         let after = case.said_of(&fixed, case.study.scenario(), &values)?;
         negated(&bare, &after)
     } else if let Some(function) = &cured.function {

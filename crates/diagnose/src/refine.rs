@@ -2,7 +2,6 @@
 
 use crate::balance::{Balance, Drive0, Kind};
 use crate::catalogue::{Cause, Class, Form};
-use crate::noise::Noise;
 use crate::profile::Function;
 use crate::search::{Accepted, Found};
 use crate::trial::{Pool, corrected, for_run};
@@ -43,6 +42,9 @@ impl Refined {
     }
 }
 
+/// An effect so many times its usual size is none of this kind.
+const MOST_SIZES: f64 = 10.0;
+
 /// Fits balance after balance; what an earlier one found stays for the later ones.
 pub fn refine(
     case: &Case,
@@ -73,21 +75,15 @@ pub fn refine(
         if new.is_empty() && !moved {
             continue;
         }
-        let fitted = nonlinear(case, balance, pool, found, &free, &causes, &new)?;
-        let count = parameters.len();
-        for (own, estimate) in free.iter_mut().zip(&fitted.estimates[..count]) {
+        let (fitted, cured) = nonlinear(case, balance, found, &free, &causes, &new)?;
+        for (own, estimate) in free.iter_mut().zip(&fitted.estimates[..parameters.len()]) {
             // A balance that does not see a parameter leaves it as it was.
             let width = |ci: [f64; 2]| ci[1] - ci[0];
             if width(estimate.ci95) < width(own.3) || !width(own.3).is_finite() {
                 (own.2, own.3) = (estimate.value, estimate.ci95);
             }
         }
-        let mut rest = fitted.estimates[count..].iter();
-        for accepted in new {
-            let cause = case.causes[accepted.trial.cause].clone();
-            let values = rest.by_ref().take(cause.terms.len()).map(|one| (one.value, one.ci95)).collect();
-            causes.push(Cured { cause, balance: index, accepted: accepted.clone(), values, function: None });
-        }
+        causes.extend(cured.into_iter().map(|one| Cured { balance: index, ..one }));
         null_space.extend(fitted.null_space);
     }
     null_space.sort_unstable();
@@ -110,28 +106,14 @@ fn linear(
         let sd = found.estimate.covariance[(position, position)].sqrt();
         [value - 1.96 * sd, value + 1.96 * sd]
     };
-    for (position, own) in free.iter_mut().enumerate().take(pool.nuisance) {
+    for (position, own) in free.iter_mut().enumerate().take(pool.nuisance.min(case.study.parameters.len())) {
         let bounds = case.study.parameters[position].bounds;
         own.2 = (own.1 + found.estimate.beta[position]).clamp(bounds.0, bounds.1);
         own.3 = interval(position, own.2);
     }
     for accepted in &found.accepted {
         let cause = case.causes[accepted.trial.cause].clone();
-        let mut values = Vec::new();
-        if accepted.function.is_none() {
-            let mut columns = accepted.trial.columns.iter();
-            let mut shape = accepted.trial.shape.iter();
-            for term in &cause.terms {
-                if term.linear {
-                    let position = columns.next().and_then(|column| found.used.iter().position(|one| one == column));
-                    let value = position.map_or(0.0, |position| found.estimate.beta[position]);
-                    values.push((value, position.map_or([value; 2], |position| interval(position, value))));
-                } else {
-                    let value = shape.next().copied().unwrap_or(1.0);
-                    values.push((value, [value; 2]));
-                }
-            }
-        }
+        let values = if accepted.function.is_none() { started(case, accepted, found) } else { Vec::new() };
         causes.push(Cured {
             cause,
             balance: index,
@@ -142,15 +124,17 @@ fn linear(
     }
 }
 
+/// A parameter of a new cause: which cause, which term.
+type Slot = (usize, usize);
+
 fn nonlinear(
     case: &Case,
     balance: &Balance,
-    pool: &Pool,
     found: &Found,
     free: &[(String, f64, f64, [f64; 2])],
     before: &[Cured],
     new: &[&Accepted],
-) -> Result<Fit, DiagnoseError> {
+) -> Result<(Fit, Vec<Cured>), DiagnoseError> {
     let mut parameters: Vec<Parameter> = case.study.parameters.clone();
     for (index, parameter) in parameters.iter_mut().enumerate() {
         // An earlier balance has already said something: that is the prior now.
@@ -161,48 +145,65 @@ fn nonlinear(
         }
     }
     let count = parameters.len();
-    for accepted in new {
+    let start: Vec<Vec<(f64, [f64; 2])>> = new.iter().map(|accepted| started(case, accepted, found)).collect();
+    let mut slots: Vec<Slot> = Vec::new();
+    for (place, accepted) in new.iter().enumerate() {
         let cause = &case.causes[accepted.trial.cause];
-        let mut columns = accepted.trial.columns.iter();
-        let mut shape = accepted.trial.shape.iter();
-        for term in &cause.terms {
-            let (value, sd) = if term.linear {
-                let position = columns.next().and_then(|column| found.used.iter().position(|one| one == column));
-                (position.map_or(0.0, |position| found.estimate.beta[position]), Some(4.0 * term.scale))
+        if cause.form == Form::Measured {
+            continue;
+        }
+        for (index, term) in cause.terms.iter().enumerate() {
+            let value = start[place][index].0;
+            if term.linear && !accepted.trial.terms.contains(&index) || !term.linear && value == 0.0 {
+                continue;
+            }
+            let (low, high, sd) = if term.linear {
+                let low = if term.positive { 0.0 } else { -MOST_SIZES * term.scale };
+                (low, MOST_SIZES * term.scale, 4.0 * term.scale)
             } else {
-                let value = shape.next().copied().unwrap_or(1.0);
-                // A shape is known about as well as its grid is spaced; where it is no parameter it stays.
-                (value, Some((0.6 * value.abs()).max(1e-9)))
+                // A shape is known about as well as its grid is spaced.
+                (0.2 * value, 5.0 * value, 0.6 * value.abs())
             };
-            let low = if term.positive { 0.0 } else { f64::NEG_INFINITY };
-            let (low, high) = if term.linear { (low, f64::INFINITY) } else { (0.2 * value, 5.0 * value) };
-            let bounds = if low < high { (low, high) } else { (value - 1e-9, value + 1e-9) };
-            parameters.push(Parameter { name: term.name.to_owned(), value: value.max(low), sd, bounds });
+            slots.push((place, index));
+            let value = value.clamp(low.min(high), high.max(low));
+            parameters.push(Parameter { name: term.name.to_owned(), value, sd: Some(sd), bounds: (low, high) });
         }
     }
-    let whitener_noise: Noise = found.noise.1;
-    let whitener = whitener_noise.whitener(&balance.chunks);
+    // A sensor's fault keeps its linear estimate: fitted freely it would shrink the noise along with the signal.
+    let mut drives: Vec<Drive0> = case.drives.clone();
+    let faults = before.iter().filter(|cured| cured.cause.form == Form::Measured);
+    for cured in faults {
+        drives = corrected(&drives, cured.cause.id, cured.values[0].0)?;
+    }
+    for (place, accepted) in new.iter().enumerate() {
+        let cause = &case.causes[accepted.trial.cause];
+        if cause.form == Form::Measured {
+            drives = corrected(&drives, cause.id, start[place][0].0)?;
+        }
+    }
+    let whitener = found.noise.1.whitener(&balance.chunks);
+    let filled = |x: &[f64]| -> Vec<Vec<f64>> {
+        let mut all: Vec<Vec<f64>> =
+            start.iter().map(|values| values.iter().map(|(value, _)| *value).collect()).collect();
+        for ((place, index), value) in slots.iter().zip(&x[count..]) {
+            all[*place][*index] = *value;
+        }
+        all
+    };
     let evaluate = |x: &[f64]| -> Result<Residuals, DiagnoseError> {
-        let mut drives: Option<Vec<Drive0>> = None;
         let mut texts: Vec<(Cause, Vec<f64>)> = before
             .iter()
             .filter(|cured| cured.function.is_none() && cured.cause.class == Class::Physics)
             .map(|cured| (cured.cause.clone(), cured.values.iter().map(|(value, _)| *value).collect()))
             .collect();
-        let mut rest = &x[count..];
-        for accepted in new {
+        for (accepted, values) in new.iter().zip(filled(x)) {
             let cause = &case.causes[accepted.trial.cause];
-            let (own, others) = rest.split_at(cause.terms.len());
-            rest = others;
-            if cause.form == Form::Measured {
-                drives = Some(corrected(case, cause.id, own[0])?);
-            } else {
-                texts.push((cause.clone(), own.to_vec()));
+            if cause.form != Form::Measured {
+                texts.push((cause.clone(), values));
             }
         }
-        let drives = drives.as_deref().unwrap_or(&case.drives);
-        let said = said_with_all(case, drives, &texts, &x[..count])?;
-        let residual = balance.residual_of(drives, &said);
+        let said = said_with_all(case, &drives, &texts, &x[..count])?;
+        let residual = balance.residual_of(&drives, &said);
         let mut clusters: Residuals = Vec::new();
         let mut cluster_of: Vec<usize> = Vec::new();
         for (chunk, values) in balance.chunks.iter().zip(&residual) {
@@ -223,8 +224,43 @@ fn nonlinear(
         }
         Ok(clusters)
     };
-    let _ = pool;
-    fit(&parameters, evaluate)
+    let fitted = fit(&parameters, evaluate)?;
+    let mut cured: Vec<Cured> = new
+        .iter()
+        .zip(&start)
+        .map(|(accepted, values)| Cured {
+            cause: case.causes[accepted.trial.cause].clone(),
+            balance: 0,
+            accepted: (*accepted).clone(),
+            values: values.clone(),
+            function: None,
+        })
+        .collect();
+    for ((place, index), estimate) in slots.iter().zip(&fitted.estimates[count..]) {
+        cured[*place].values[*index] = (estimate.value, estimate.ci95);
+    }
+    Ok((fitted, cured))
+}
+
+/// The linear estimate of a cause's parameters.
+fn started(case: &Case, accepted: &Accepted, found: &Found) -> Vec<(f64, [f64; 2])> {
+    let cause = &case.causes[accepted.trial.cause];
+    let mut shape = accepted.trial.shape.iter();
+    let one = |(index, term): (usize, &crate::catalogue::Term)| {
+        if !term.linear {
+            let value = shape.next().copied().unwrap_or(1.0);
+            return (value, [value; 2]);
+        }
+        let place = accepted.trial.terms.iter().position(|own| *own == index);
+        let column = place.map(|place| accepted.trial.columns[place]);
+        let position = column.and_then(|column| found.used.iter().position(|used| *used == column));
+        let Some(position) = position else { return (0.0, [0.0; 2]) };
+        let value = found.estimate.beta[position];
+        let value = if term.positive { value.max(0.0) } else { value };
+        let half = 1.96 * found.estimate.covariance[(position, position)].sqrt();
+        (value, [value - half, value + half])
+    };
+    cause.terms.iter().enumerate().map(one).collect()
 }
 
 /// What the model says with several effects.

@@ -149,6 +149,23 @@ pub struct Calibrated {
     pub unit: String,
 }
 
+/// A cause that was tried.
+#[derive(Clone, Debug, Serialize)]
+pub struct Tried {
+    /// The balance.
+    pub balance: Kind,
+    /// The round: one cause is accepted in each.
+    pub round: usize,
+    /// The cause.
+    pub id: String,
+    /// Its non-linear parameters.
+    pub shape: Vec<f64>,
+    /// Growth of ln p.
+    pub gain: f64,
+    /// What the growth has to exceed.
+    pub needed: f64,
+}
+
 /// `diagnosis.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Diagnosis {
@@ -168,6 +185,8 @@ pub struct Diagnosis {
     pub null_space: Vec<String>,
     /// What was decided on the way.
     pub notes: Vec<String>,
+    /// The best causes of every round and why they lost: the evidence they brought.
+    pub tried: Vec<Tried>,
 }
 
 /// A diagnosis with what is written beside it.
@@ -281,6 +300,7 @@ pub fn report(
         calibrated,
         null_space,
         notes,
+        tried: tried(case, balances, found),
     };
     Ok(Diagnosed {
         diagnosis,
@@ -289,6 +309,25 @@ pub fn report(
         corrections: corrections(refined),
         residuals: residuals(case, balances, found),
     })
+}
+
+fn tried(case: &Case, balances: &[Balance], found: &[Option<Found>]) -> Vec<Tried> {
+    let mut all = Vec::new();
+    for (balance, found) in balances.iter().zip(found) {
+        for (number, round) in found.iter().flat_map(|found| &found.tried).enumerate() {
+            for (cause, shape, gain) in &round.causes {
+                all.push(Tried {
+                    balance: balance.kind,
+                    round: number + 1,
+                    id: case.causes[*cause].id.to_owned(),
+                    shape: shape.clone(),
+                    gain: *gain,
+                    needed: round.by_chance,
+                });
+            }
+        }
+    }
+    all
 }
 
 fn verdict(findings: &[FindingReport]) -> Verdict {

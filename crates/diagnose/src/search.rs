@@ -1,9 +1,9 @@
 //! Which causes a balance needs: added one by one while the evidence grows more than chance could make it grow.
 
 use crate::balance::Balance;
-use crate::catalogue::{Cause, Class, Form};
+use crate::catalogue::{Cause, Form};
 use crate::gram::{Column, Estimate, Reduced, Whitened};
-use crate::noise::Noise;
+use crate::noise::{Noise, Shape};
 use crate::profile::{Function, Profile, Spread};
 use crate::trial::{Pool, Trial};
 use crate::Case;
@@ -25,8 +25,19 @@ pub struct Accepted {
     pub function: Option<Function>,
 }
 
+/// One round: the best trials, each with the growth of ln p that it brought.
+#[derive(Clone, Debug)]
+pub struct Round {
+    /// What a growth has to exceed.
+    pub by_chance: f64,
+    /// Cause, its shape and its gain, the best first.
+    pub causes: Vec<(usize, Vec<f64>, f64)>,
+}
+
 /// What was found in a balance.
 pub struct Found {
+    /// What was tried, round after round.
+    pub tried: Vec<Round>,
     /// The causes, in the order in which they were accepted.
     pub accepted: Vec<Accepted>,
     /// Noise before and after.
@@ -54,7 +65,11 @@ const LEAST_GAIN: f64 = 4.0;
 /// Draws of the null distribution.
 const DRAWS: u64 = 300;
 /// An effect has to be at least this share of a row's noise, as root mean square.
-const LEAST_EFFECT: f64 = 0.08;
+const LEAST_EFFECT: f64 = 0.15;
+/// A second or third cause has to be at least this share of what was to be explained, as mean square.
+const LEAST_SHARE: f64 = 0.03;
+/// A sensor that is this close to right is right: share of a scale, of a sampling period for a latency.
+const LEAST_SCALE: f64 = 0.005;
 
 /// Searches one balance.
 pub fn search(case: &Case, balance: &Balance, pool: &Pool, causes: &[Cause], banned: &[&str]) -> Option<Found> {
@@ -63,6 +78,7 @@ pub fn search(case: &Case, balance: &Balance, pool: &Pool, causes: &[Cause], ban
     let mut used = nuisance.clone();
     let mut accepted: Vec<Accepted> = Vec::new();
     let mut function: Option<(usize, Spread)> = None;
+    let mut tried: Vec<Round> = Vec::new();
     let state = State { case, balance, pool, fit };
     let (mut noise, mut here) = state.settle(&used, None)?;
     let first_noise = noise;
@@ -113,26 +129,35 @@ pub fn search(case: &Case, balance: &Balance, pool: &Pool, causes: &[Cause], ban
             judged.push((Contest { gain, ..one }, noise, settled));
         }
         judged.sort_by(|one, other| other.0.gain.total_cmp(&one.0.gain));
-        let Some((best, best_noise, _)) = judged.first() else { break };
+        tried.push(Round {
+            by_chance: LEAST_GAIN.max(by_chance),
+            causes: judged.iter().map(|(one, _, _)| (one.trial.cause, one.trial.shape.clone(), one.gain)).collect(),
+        });
         let threshold = LEAST_GAIN.max(by_chance);
-        if best.gain < threshold {
-            break;
-        }
-        let cause = &causes[best.trial.cause];
-        let mut with = used.clone();
-        let own = match best.spread {
-            Some(spread) => Some((best.trial.columns[0], spread)),
-            None => {
-                with.extend(&best.trial.columns);
-                function
+        let mut chosen = None;
+        for (place, (one, noise, _)) in judged.iter().enumerate() {
+            if one.gain < threshold {
+                break;
             }
-        };
-        let Some((next_noise, settled)) = state.settle_from(&with, own, best_noise) else { break };
-        if !state.matters(&with, &settled, &best.trial, own, &next_noise) {
-            break;
+            let mut with = used.clone();
+            let own = match one.spread {
+                Some(spread) => Some((one.trial.columns[0], spread)),
+                None => {
+                    with.extend(&one.trial.columns);
+                    function
+                }
+            };
+            let Some((next_noise, settled)) = state.settle_from(&with, own, noise) else { continue };
+            if state.matters(&with, &settled, &one.trial, own, &next_noise) {
+                chosen = Some((place, with, own, next_noise, settled));
+                break;
+            }
         }
+        let Some((place, with, own, next_noise, settled)) = chosen else { break };
+        let best = &judged[place].0;
+        let cause = &causes[best.trial.cause];
         let mut rivals: Vec<(usize, f64, f64)> = Vec::new();
-        for (other, _, _) in judged.iter().skip(1) {
+        for (other, _, _) in judged.iter().skip(place + 1) {
             let rival = &causes[other.trial.cause];
             let listed = rivals.iter().any(|(known, _, _)| causes[*known].id == rival.id);
             if rival.id == cause.id || listed {
@@ -162,6 +187,7 @@ pub fn search(case: &Case, balance: &Balance, pool: &Pool, causes: &[Cause], ban
     let left = state.left(&used, &here.estimate, shown.map(|(trial, function)| (trial, &causes[trial.cause], function)));
     let lack = |noise: &Noise| noise.process / noise.sensor.max(1e-300);
     Some(Found {
+        tried,
         lack_of_fit: (lack(&first_noise), lack(&noise)),
         accepted,
         noise: (first_noise, noise),
@@ -209,7 +235,9 @@ impl State<'_> {
 
     /// Estimates, and lets the noise follow.
     fn settle_from(&self, used: &[usize], own: Option<(usize, Spread)>, start: &Noise) -> Option<(Noise, Settled)> {
-        const ROUNDS: usize = 3;
+        const ROUNDS: usize = 15;
+        /// A growth of ln p below this is none.
+        const SETTLED: f64 = 0.02;
         let chunks: Vec<_> = self.fit_chunks().cloned().collect();
         let mut noise = *start;
         let mut best: Option<(Noise, Settled)> = None;
@@ -238,7 +266,8 @@ impl State<'_> {
                 }
             };
             let next = Noise::of(self.balance.shape, &chunks, &self.fit_rows(&left));
-            let better = best.as_ref().is_none_or(|(_, one)| estimate.log_evidence > one.estimate.log_evidence);
+            let better =
+                best.as_ref().is_none_or(|(_, one)| estimate.log_evidence > one.estimate.log_evidence + SETTLED);
             if !better {
                 break;
             }
@@ -341,10 +370,23 @@ impl State<'_> {
         if own.is_some_and(|(column, _)| trial.columns == [column]) {
             return true;
         }
+        let own = self.mean_square(&trial.columns, used, settled);
+        let others: Vec<usize> = used.iter().copied().filter(|column| *column >= self.pool.nuisance).collect();
+        let all = self.mean_square(&others, used, settled);
+        // Differences of speed are noisy row by row and not over a run, so their rows are no measure.
+        let heard = match self.balance.shape {
+            Shape::Differenced => true,
+            Shape::Averaged => own.sqrt() > LEAST_EFFECT * noise.sd(),
+        };
+        heard && own > LEAST_SHARE * all && self.beyond_the_sensor(used, settled, trial)
+    }
+
+    /// Mean square of what some columns explain together.
+    fn mean_square(&self, columns: &[usize], used: &[usize], settled: &Settled) -> f64 {
         let (mut sum, mut count) = (0.0, 0usize);
         for (index, chunk) in self.balance.chunks.iter().enumerate().filter(|(_, chunk)| self.fit[chunk.run]) {
             let mut effect = DVector::zeros(chunk.rows.len());
-            for column in &trial.columns {
+            for column in columns {
                 if let Some(position) = used.iter().position(|used| used == column) {
                     effect += &self.pool.columns[*column][index] * settled.estimate.beta[position];
                 }
@@ -352,17 +394,31 @@ impl State<'_> {
             sum += effect.norm_squared();
             count += effect.len();
         }
-        (sum / count.max(1) as f64).sqrt() > LEAST_EFFECT * noise.sd()
+        sum / count.max(1) as f64
+    }
+
+    /// Whether a sensor's fault is one that anybody would mind.
+    fn beyond_the_sensor(&self, used: &[usize], settled: &Settled, trial: &Trial) -> bool {
+        let cause = &self.case.causes[trial.cause];
+        let position = used.iter().position(|used| trial.columns.first() == Some(used));
+        let value = position.map_or(0.0, |position| settled.estimate.beta[position].abs());
+        match cause.id {
+            "latency" => {
+                let period = |drive: &crate::balance::Drive0| {
+                    drive.measured.trace.duration_s() / (drive.measured.trace.len().max(2) - 1) as f64
+                };
+                value > self.case.drives.iter().map(period).fold(0.0, f64::max)
+            }
+            "speed_scale" | "force_scale" => value > LEAST_SCALE,
+            _ => true,
+        }
     }
 }
 
 /// Whether a cause would have to be what it cannot be.
 fn impossible(cause: &Cause, trial: &Trial, estimate: &Estimate, first: usize) -> bool {
-    let linear: Vec<_> = cause.terms.iter().filter(|term| term.linear).collect();
-    if linear.len() != trial.columns.len() {
-        return false;
-    }
-    linear.iter().enumerate().any(|(index, term)| term.positive && estimate.beta[first + index] < 0.0)
+    let positive = |(index, term): (usize, &usize)| cause.terms[*term].positive && estimate.beta[first + index] < 0.0;
+    trial.terms.iter().enumerate().any(positive)
 }
 
 /// The growth of ln p that the best of all trials reaches by chance once in a hundred, if nothing is missing.
@@ -395,9 +451,4 @@ fn chance(state: &State, reduced: &Reduced, used: &[usize], causes: &[Cause], ba
         best.push(gain.fold(f64::NEG_INFINITY, f64::max));
     }
     if best.is_empty() { LEAST_GAIN } else { quantile_of_sorted(&sorted(&best), 0.99) }
-}
-
-/// Whether a cause speaks of the world.
-pub fn is_physics(cause: &Cause) -> bool {
-    cause.class == Class::Physics
 }

@@ -30,6 +30,8 @@ pub struct Trial {
     pub shape: Vec<f64>,
     /// Its columns, or the one signature of a function.
     pub columns: Vec<usize>,
+    /// Which of the cause's terms each column stands for; the other linear ones are zero.
+    pub terms: Vec<usize>,
 }
 
 /// A change of a free parameter for its column, as a share of its standard deviation.
@@ -60,6 +62,7 @@ pub fn pools(case: &Case, balances: &[Balance], causes: &[Cause]) -> Result<Vec<
             pool.nuisance += 1;
         }
     }
+    small_faults(case, balances, &mut pools)?;
     for (number, cause) in causes.iter().enumerate() {
         case.progress.step(cause.id);
         if case.progress.interrupted() {
@@ -70,14 +73,15 @@ pub fn pools(case: &Case, balances: &[Balance], causes: &[Cause]) -> Result<Vec<
             continue;
         }
         for shape in &cause.shapes {
-            let mut found: Vec<Vec<(Column, f64)>> = balances.iter().map(|_| Vec::new()).collect();
+            let mut found: Vec<Vec<Term>> = balances.iter().map(|_| Vec::new()).collect();
             for (term, part) in cause.terms.iter().enumerate().filter(|(_, term)| term.linear) {
                 let step = CAUSE_STEP * part.scale;
                 let text = |run: &Drive0| signature(cause, term, step, shape, run);
                 let after = case.said_with(&text, &priors)?;
                 for (balance, found) in balances.iter().zip(&mut found) {
                     if tried_on(cause, balance.kind, balances) {
-                        found.push((difference(case, balance, &after, step), part.scale));
+                        let column = difference(case, balance, &after, step);
+                        found.push(Term { column, scale: part.scale, term });
                     }
                 }
             }
@@ -87,6 +91,31 @@ pub fn pools(case: &Case, balances: &[Balance], causes: &[Cause]) -> Result<Vec<
         }
     }
     Ok(pools)
+}
+
+/// What every sensor does a little: half a sampling period of latency, half a per cent of scale. Nobody would call it a
+/// fault, and it must not be taken for physics; so it is free in every balance.
+fn small_faults(case: &Case, balances: &[Balance], pools: &mut [Pool]) -> Result<(), DiagnoseError> {
+    const SCALE: f64 = 0.005;
+    let period_s = |drive: &Drive0| {
+        drive.measured.trace.duration_s() / (drive.measured.trace.len().max(2) - 1) as f64
+    };
+    let period_s = case.drives.iter().map(period_s).fold(0.0, f64::max);
+    if !balances.iter().any(|balance| balance.kind == Kind::Motion) {
+        return Ok(());
+    }
+    for (id, sd) in [("latency", 0.5 * period_s), ("force_scale", SCALE), ("speed_scale", SCALE)] {
+        let columns = fault(case, balances, id, sd)?;
+        for ((balance, pool), column) in balances.iter().zip(pools.iter_mut()).zip(columns) {
+            if balance.kind != Kind::Motion {
+                continue;
+            }
+            pool.columns.push(column);
+            pool.sd.push(sd);
+            pool.nuisance += 1;
+        }
+    }
+    Ok(())
 }
 
 /// Whether a cause is tried on a balance: causes of motion are looked for in powers only where no force was measured.
@@ -150,21 +179,35 @@ fn difference(case: &Case, balance: &Balance, after: &[Said], step: f64) -> Colu
     column(&balance.chunks, &samples)
 }
 
-fn add(balance: &Balance, pool: &mut Pool, cause: usize, shape: &[f64], found: Vec<(Column, f64)>) {
+/// The column of one term.
+struct Term {
+    column: Column,
+    scale: f64,
+    term: usize,
+}
+
+fn add(balance: &Balance, pool: &mut Pool, cause: usize, shape: &[f64], found: Vec<Term>) {
     let strength = |column: &Column| column.iter().map(DVector::norm_squared).sum::<f64>().sqrt();
     let residual = strength(&balance.residual);
-    let found: Vec<(Column, f64)> =
-        found.into_iter().filter(|(column, scale)| strength(column) * scale > WEAKEST * residual).collect();
+    let found: Vec<Term> =
+        found.into_iter().filter(|one| strength(&one.column) * one.scale > WEAKEST * residual).collect();
     if found.is_empty() {
         return;
     }
     let first = pool.columns.len();
-    let columns = (first..first + found.len()).collect();
-    for (column, scale) in found {
-        pool.columns.push(column);
-        pool.sd.push(scale);
+    let columns: Vec<usize> = (first..first + found.len()).collect();
+    let terms: Vec<usize> = found.iter().map(|one| one.term).collect();
+    for one in found {
+        pool.columns.push(one.column);
+        pool.sd.push(one.scale);
     }
-    pool.trials.push(Trial { cause, shape: shape.to_vec(), columns });
+    // A cause of several terms is tried with each of them alone as well: none is claimed that is not needed.
+    if columns.len() > 1 {
+        for (column, term) in columns.iter().zip(&terms) {
+            pool.trials.push(Trial { cause, shape: shape.to_vec(), columns: vec![*column], terms: vec![*term] });
+        }
+    }
+    pool.trials.push(Trial { cause, shape: shape.to_vec(), columns, terms });
 }
 
 /// Columns of what a sensor does: the recording is corrected, and the residual follows.
@@ -177,23 +220,66 @@ fn measured(
 ) -> Result<(), DiagnoseError> {
     let Some(term) = cause.terms.first() else { return Ok(()) };
     let step = CAUSE_STEP * term.scale;
-    let corrected = corrected(case, cause.id, step)?;
-    let said = case.said_of(&corrected, case.study.scenario(), &case.study.priors())?;
-    for (balance, pool) in balances.iter().zip(pools) {
-        if !cause.balances.contains(&balance.kind) {
-            continue;
+    let columns = fault(case, balances, cause.id, step)?;
+    for ((balance, pool), column) in balances.iter().zip(pools).zip(columns) {
+        if cause.balances.contains(&balance.kind) {
+            add(balance, pool, number, &[], vec![Term { column, scale: term.scale, term: 0 }]);
         }
-        let after = balance.residual_of(&corrected, &said);
-        let column: Column =
-            balance.residual.iter().zip(&after).map(|(before, after)| (before - after) / step).collect();
-        add(balance, pool, number, &[], vec![(column, term.scale)]);
     }
     Ok(())
 }
 
+/// What a unit of a sensor's fault does to every row of every balance.
+///
+/// The acceleration is the one that force and model make: the recorded one would bring its noise into the column.
+fn fault(case: &Case, balances: &[Balance], id: &str, step: f64) -> Result<Vec<Column>, DiagnoseError> {
+    let corrected = corrected(&case.drives, id, step)?;
+    let said = case.said_of(&corrected, case.study.scenario(), &case.study.priors())?;
+    let of_run = |kind: Kind, run: usize| -> Vec<f64> {
+        let (before, after) = (&case.drives[run], &corrected[run]);
+        let (model, remodelled) = (&case.nominal[run], &said[run]);
+        let channel = |drive: &Drive0, name: &str| drive.measured.trace.get(name).map(<[f64]>::to_vec);
+        let less = |name: &str| match (channel(before, name), channel(after, name)) {
+            (Some(before), Some(after)) => before.iter().zip(after).map(|(one, other)| one - other).collect(),
+            _ => vec![0.0; model.resistance_n.len()],
+        };
+        match kind {
+            Kind::Motion => {
+                let time_s = before.measured.trace.time_s();
+                let force = |drive: &Drive0, index: usize| drive.force_n.as_ref().map_or(0.0, |force| force[index]);
+                (0..model.resistance_n.len())
+                    .map(|index| {
+                        let made = before.acceleration_m_s2[index];
+                        let faster = match id {
+                            "latency" => interpolate(time_s, &before.acceleration_m_s2, time_s[index] + step) - made,
+                            "speed_scale" => made / (1.0 + step) - made,
+                            _ => 0.0,
+                        };
+                        force(before, index) - force(after, index)
+                            + remodelled.resistance_n[index] - model.resistance_n[index]
+                            + model.effective_mass_kg[index] * faster
+                    })
+                    .collect()
+            }
+            Kind::Parity => less("specific_force_m_s2"),
+            Kind::Slip => less("wheel_speed_m_s"),
+            Kind::Shaft | Kind::Battery | Kind::Fuel => vec![0.0; model.resistance_n.len()],
+        }
+    };
+    Ok(balances
+        .iter()
+        .map(|balance| {
+            let samples: Vec<Vec<f64>> = (0..case.drives.len())
+                .map(|run| of_run(balance.kind, run).iter().map(|value| value / step).collect())
+                .collect();
+            column(&balance.chunks, &samples)
+        })
+        .collect())
+}
+
 /// The runs as they would have been recorded without an artefact of this size.
-pub fn corrected(case: &Case, id: &str, value: f64) -> Result<Vec<Drive0>, DiagnoseError> {
-    case.drives
+pub fn corrected(drives: &[Drive0], id: &str, value: f64) -> Result<Vec<Drive0>, DiagnoseError> {
+    drives
         .iter()
         .map(|drive| {
             let mut drive = drive.clone();

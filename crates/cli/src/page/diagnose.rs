@@ -27,7 +27,8 @@ pub fn page(about: &str, recording: &Recording, found: &Diagnosed) -> Result<Rep
         })
         .collect();
     if !parameters.is_empty() {
-        let section = Section::new("Free parameters").with(build::parameter_table("Free parameters", &parameters));
+        let section =
+            Section::new("Free parameters").with(build::parameter_table("Free parameters", &parameters));
         report = report.with(section);
     }
     if !diagnosis.null_space.is_empty() {
@@ -64,12 +65,16 @@ fn proof(found: &Diagnosed) -> Section {
     if fit.fitted.noise.is_finite() {
         figures.push(Figure::new("Noise of the sensor", fit.fitted.noise, &unit));
     }
-    Section::new("Proof").words(format!("Root mean square error of {}.", fit.signal)).with(Item::Figures(figures))
+    Section::new("Proof")
+        .words(format!("Root mean square error of {}.", fit.signal))
+        .with(Item::Figures(figures))
 }
 
 fn section(finding: &FindingReport, found: &Diagnosed) -> Section {
-    let mut section = Section::new(finding.id.replace('_', " "))
-        .words(format!("{} Equation: {}. Next: {}.", finding.sentence, finding.equation, finding.next_experiment));
+    let mut section = Section::new(finding.id.replace('_', " ")).words(format!(
+        "{} Equation: {}. Next: {}.",
+        finding.sentence, finding.equation, finding.next_experiment
+    ));
     let parameters: Vec<Parameter> = finding
         .parameters
         .iter()
@@ -97,7 +102,8 @@ fn section(finding: &FindingReport, found: &Diagnosed) -> Section {
             })
             .take(IN_DETAIL)
             .collect();
-        section = section.with(Plot::new("The effect along the runs", Lines::over_time(Axis::of(&name), series)));
+        section =
+            section.with(Plot::new("The effect along the runs", Lines::over_time(Axis::of(&name), series)));
     }
     if !finding.stretches.is_empty() {
         let row = |place: &headland_diagnose::Interval| {
@@ -128,15 +134,19 @@ fn section(finding: &FindingReport, found: &Diagnosed) -> Section {
 
 /// What each balance leaves over, before and after.
 fn left(found: &Diagnosed) -> Section {
-    let mut section = Section::new("What the balances leave over")
-        .words("Measured minus modelled: with the free parameters alone, and with everything that was found.");
+    let mut section = Section::new("What the balances leave over").words(
+        "Measured minus modelled: with the free parameters alone, and with everything that was found.",
+    );
     for (kind, run, times, before, after) in found.residuals.iter().take(IN_DETAIL) {
         let series = vec![
             Series::new("free parameters alone", times.clone(), before.clone()),
             Series::new("with what was found", times.clone(), after.clone()),
         ];
         let axis = Axis::new(format!("left over in the {} balance", kind.name()), kind.unit());
-        section = section.with(Plot::new(format!("{}: {}", super::titled(run), kind.name()), Lines::over_time(axis, series)));
+        section = section.with(Plot::new(
+            format!("{}: {}", super::titled(run), kind.name()),
+            Lines::over_time(axis, series),
+        ));
     }
     section
 }

@@ -6,6 +6,22 @@
 //!
 //! A case is a folder: `scenario.ron` (the nominal scenario, somewhat wrong within the spread that it states),
 //! `recording.ron` with its logs, and `truth.json` with `truth.parquet`, which only the scorer opens.
+//!
+//! ```text
+//! conceal generate --cases 300 --seed 1 --out SET
+//! conceal score SET --program target/release/headland --markdown synthetic.md
+//! conceal score SET --without-truth --markdown synthetic_without.md
+//! ```
+//!
+//! Forces in `truth.parquet` are net and forward, powers are taken, as in the `effects.parquet` of a diagnosis. The
+//! strength of a cause is its root mean square over the white noise of its balance at one second.
+//! `generate --noiseless` makes cases whose scenario is exact and whose sensors are: what `headland compare` then
+//! leaves over is how plant and simulator differ. A case with nothing hidden leaves 1 mm/s or so. A recorded
+//! accelerometer feels the pitch of the body, which no scenario knows; so `accelerometer_tilt` is true of every such
+//! case, and naming it counts neither way.
+//!
+//! Not hidden: causes that only a recorded fuel rate or a driver's demand would show (`engine_friction`, `turbo_lag`,
+//! `cold_start`, `regeneration_limit`).
 
 #![allow(clippy::suboptimal_flops, reason = "equations are written as in their sources")]
 

@@ -127,6 +127,8 @@ const SLOWEST_M_S: f64 = 0.4;
 const ROWS_PER_RUN: f64 = 300.0;
 /// Window of the forward replay that gives powers at recorded torque [s].
 const POWER_WINDOW_S: f64 = 1.0;
+/// Window of the forward replay that gives resistances at recorded force [s].
+const MOTION_WINDOW_S: f64 = 0.5;
 /// Lower heating value that turns fuel into watts in residuals [J/kg]: diesel, EN 590; a scale only.
 pub const FUEL_J_KG: f64 = 42.8e6;
 
@@ -215,7 +217,11 @@ pub fn said(
 }
 
 fn say(model: &Model, drive: &Drive0, trace: &Trace, kinds: &[Kind]) -> Result<Said, DiagnoseError> {
-    let how = Replay { drive: Drive::Speed, window_s: None, ..drive.measured.how.clone() };
+    // Driven by the recorded force the model's own acceleration holds no noise of the recorded speed.
+    let how = match forward(drive) {
+        Some(forward) => Replay { drive: forward, window_s: Some(MOTION_WINDOW_S), ..drive.measured.how.clone() },
+        None => Replay { drive: Drive::Speed, window_s: None, ..drive.measured.how.clone() },
+    };
     let how = Replay { also: inputs(trace, &how), ..how };
     let failed = |error| DiagnoseError::Replay { run: drive.measured.id.clone(), error };
     let modelled = replay(model, trace, &how).map_err(failed)?.trace;
@@ -246,6 +252,21 @@ fn say(model: &Model, drive: &Drive0, trace: &Trace, kinds: &[Kind]) -> Result<S
         fuel_kg_s,
         tractive_n: tractive,
     })
+}
+
+/// What can drive a run forward.
+pub fn forward(drive: &Drive0) -> Option<Drive> {
+    let trace = &drive.measured.trace;
+    let coasts = trace.get("coasting").is_some_and(|values| values.iter().all(|value| *value >= 0.5));
+    if coasts {
+        Some(Drive::Coast)
+    } else if trace.get("tractive_force_n").is_some() {
+        Some(Drive::Force)
+    } else if trace.get("motor_torque_n_m").is_some() && drive.force_n.is_some() {
+        Some(Drive::Torque)
+    } else {
+        None
+    }
 }
 
 /// Every recorded circumstance, whatever the scenario's replay is told.

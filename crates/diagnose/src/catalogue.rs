@@ -173,11 +173,8 @@ impl Cause {
 pub fn causes(around: &Around) -> Vec<Cause> {
     let weight = around.mass_kg * around.gravity_m_s2;
     let has = |name: &str| around.channels.iter().any(|channel| channel == name);
-    let taus = |all: &[f64]| -> Vec<Vec<f64>> {
-        let kept: Vec<Vec<f64>> =
-            all.iter().filter(|tau| **tau < 6.0 * around.duration_s).map(|tau| vec![*tau]).collect();
-        if kept.is_empty() { vec![vec![0.5 * around.duration_s]] } else { kept }
-    };
+    // From a tenth of the longest run to six of it, evenly in proportion.
+    let taus: Vec<Vec<f64>> = (0..7).map(|step| vec![0.1 * around.duration_s * 2f64.powi(step)]).collect();
     let mut all = vec![
         cause(
             "wind",
@@ -282,7 +279,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             "tyres that warm up",
             "repeat after a rest, and again without",
         )
-        .shaped(taus(&[60.0, 240.0, 900.0, 2400.0])),
+        .shaped(taus.clone()),
         cause(
             "driveline_temperature",
             MOTION,
@@ -296,7 +293,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             "oil in the driveline that warms up",
             "log the oil temperature; repeat with the oil warm and the tyres cold",
         )
-        .shaped(taus(&[60.0, 240.0, 900.0, 2400.0])),
+        .shaped(taus.clone()),
         cause(
             "neutral_drag",
             MOTION,

@@ -1,12 +1,12 @@
 //! Before and after, on runs that were fitted and on runs that were not.
 
-use crate::balance::{Balance, Drive0, Kind, Said};
+use crate::balance::{Balance, Drive0, Kind, Said, forward};
 use crate::catalogue::{Cause, Class, Form};
 use crate::refine::{Cured, Refined, said_with_all};
 use crate::trial::{corrected, for_run};
 use crate::{Case, DiagnoseError};
 use headland_scenario::Scenario;
-use headland_sim::{Drive, Replay, replay};
+use headland_sim::{Replay, replay};
 use rayon::prelude::*;
 
 /// What an effect did along one run.
@@ -237,21 +237,6 @@ fn reconstruct(
         negated(&bare, &after)
     };
     Ok(Reconstructed { id: cured.cause.id, unit, runs })
-}
-
-/// What drives a run forward.
-fn forward(drive: &Drive0) -> Option<Drive> {
-    let trace = &drive.measured.trace;
-    let coasts = trace.get("coasting").is_some_and(|values| values.iter().all(|value| *value >= 0.5));
-    if coasts {
-        Some(Drive::Coast)
-    } else if trace.get("tractive_force_n").is_some() {
-        Some(Drive::Force)
-    } else if drive.force_n.is_some() {
-        Some(Drive::Torque)
-    } else {
-        None
-    }
 }
 
 /// Longest window in which a long run is driven forward [s].

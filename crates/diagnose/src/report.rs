@@ -130,7 +130,7 @@ pub struct Fit {
     pub fitted: FitRuns,
     /// Runs that were not; none where there were too few.
     pub held_out: Option<FitRuns>,
-    /// Variance that is not noise of the sensors over that which is, at the end.
+    /// Error at the end over the noise of the sensor: near 1 where nothing is left to explain.
     pub lack_of_fit: f64,
 }
 
@@ -255,7 +255,12 @@ pub fn report(
         rmse_after: errors.after,
         noise: proof.noise,
     };
-    let lack = found.iter().flatten().map(|found| found.lack_of_fit.1).fold(0.0, f64::max);
+    let lack = match (&proof.held_out, proof.noise) {
+        (Some(held), noise) if noise > 0.0 => held.after / noise,
+        (None, noise) if noise > 0.0 => proof.fitted.after / noise,
+        // Without a noise of its own the signal is judged by the rows: all of their scatter over the sensors' part.
+        _ => found.iter().flatten().map(|found| (1.0 + found.lack_of_fit.1).sqrt()).fold(0.0, f64::max),
+    };
     let fit = Fit {
         signal: proof.signal.to_owned(),
         fitted: runs(true, &proof.fitted),

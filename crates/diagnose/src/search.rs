@@ -1,7 +1,7 @@
 //! Which causes a balance needs: added one by one while the evidence grows more than chance could make it grow.
 
 use crate::balance::Balance;
-use crate::catalogue::{Cause, Form};
+use crate::catalogue::{Cause, Class, Form};
 use crate::gram::{Column, Estimate, Reduced, Whitened};
 use crate::noise::{Noise, Shape};
 use crate::profile::{Function, Profile, Spread};
@@ -54,6 +54,18 @@ pub struct Found {
     pub lack_of_fit: (f64, f64),
 }
 
+impl Accepted {
+    /// Whether it is this cause, or cannot be told from it.
+    fn stands_for(&self, id: &str, causes: &[Cause]) -> bool {
+        /// Two causes of this squared correlation are one to the data.
+        const SAME: f64 = 0.7;
+        let rival = |(cause, _, correlation): &(usize, f64, f64)| causes[*cause].id == id && *correlation > SAME;
+        causes[self.trial.cause].id == id || self.rivals.iter().any(rival)
+    }
+}
+
+/// A difference of ln p that is none.
+const NEARLY: f64 = 1.0;
 /// At most so many causes.
 const MOST_CAUSES: usize = 3;
 /// Trials whose noise is estimated anew.
@@ -88,7 +100,7 @@ pub fn search(case: &Case, balance: &Balance, pool: &Pool, causes: &[Cause], ban
         let base = here.estimate.log_evidence;
         for trial in &pool.trials {
             let cause = &causes[trial.cause];
-            let known = accepted.iter().any(|one| causes[one.trial.cause].id == cause.id);
+            let known = accepted.iter().any(|one| one.stands_for(cause.id, causes));
             if known || banned.contains(&cause.id) || matches!(cause.form, Form::OverPosition | Form::OverTime) {
                 continue;
             }
@@ -106,7 +118,8 @@ pub fn search(case: &Case, balance: &Balance, pool: &Pool, causes: &[Cause], ban
         if function.is_none() {
             for trial in &pool.trials {
                 let cause = &causes[trial.cause];
-                if banned.contains(&cause.id) || !matches!(cause.form, Form::OverPosition | Form::OverTime) {
+                let known = accepted.iter().any(|one| one.stands_for(cause.id, causes));
+                if known || banned.contains(&cause.id) || !matches!(cause.form, Form::OverPosition | Form::OverTime) {
                     continue;
                 }
                 if let Some((gain, spread)) = state.best_spread(trial, cause, &used, &noise, base) {
@@ -128,7 +141,12 @@ pub fn search(case: &Case, balance: &Balance, pool: &Pool, causes: &[Cause], ban
             let gain = settled.estimate.log_evidence - base;
             judged.push((Contest { gain, ..one }, noise, settled));
         }
-        judged.sort_by(|one, other| other.0.gain.total_cmp(&one.0.gain));
+        // Of two that explain as much, a cause in the world is named before a fault of a sensor.
+        let rank = |one: &Contest| {
+            let artefact = causes[one.trial.cause].class == Class::Artefact;
+            one.gain - if artefact { NEARLY } else { 0.0 }
+        };
+        judged.sort_by(|one, other| rank(&other.0).total_cmp(&rank(&one.0)));
         tried.push(Round {
             by_chance: LEAST_GAIN.max(by_chance),
             causes: judged.iter().map(|(one, _, _)| (one.trial.cause, one.trial.shape.clone(), one.gain)).collect(),
@@ -178,6 +196,7 @@ pub fn search(case: &Case, balance: &Balance, pool: &Pool, causes: &[Cause], ban
     let made = function.and_then(|own| state.function(&used, &here.estimate, own, &noise, causes));
     if let Some((column, function)) = made {
         for one in &mut accepted {
+            name_by_shape(one, &function, causes, pool);
             if one.trial.columns == [column] && matches!(causes[one.trial.cause].form, Form::OverPosition | Form::OverTime) {
                 one.function = Some(function.clone());
             }
@@ -185,7 +204,9 @@ pub fn search(case: &Case, balance: &Balance, pool: &Pool, causes: &[Cause], ban
     }
     let shown = accepted.iter().find_map(|one| one.function.as_ref().map(|function| (&one.trial, function)));
     let left = state.left(&used, &here.estimate, shown.map(|(trial, function)| (trial, &causes[trial.cause], function)));
-    let lack = |noise: &Noise| noise.process / noise.sensor.max(1e-300);
+    /// Beyond this the sensors have no part.
+    const MOST: f64 = 1e4;
+    let lack = |noise: &Noise| (noise.process / noise.sensor.max(f64::MIN_POSITIVE)).min(MOST);
     Some(Found {
         tried,
         lack_of_fit: (lack(&first_noise), lack(&noise)),
@@ -451,4 +472,30 @@ fn chance(state: &State, reduced: &Reduced, used: &[usize], causes: &[Cause], ba
         best.push(gain.fold(f64::NEG_INFINITY, f64::max));
     }
     if best.is_empty() { LEAST_GAIN } else { quantile_of_sorted(&sorted(&best), 0.99) }
+}
+
+/// A function over position that these recordings give to slopes and to soft ground alike: where it rises in places above
+/// a floor it is told as ground, where it goes both ways as slopes. The other stays named beside it.
+fn name_by_shape(one: &mut Accepted, function: &Function, causes: &[Cause], pool: &Pool) {
+    /// So many times higher than deep is 'in places'.
+    const LOPSIDED: f64 = 2.0;
+    let id = causes[one.trial.cause].id;
+    let twin = match id {
+        "grade" => "soft_ground",
+        "soft_ground" => "grade",
+        _ => return,
+    };
+    let Some(place) = one.rivals.iter().position(|(rival, _, _)| causes[*rival].id == twin) else { return };
+    let values: Vec<f64> = function.values.iter().flat_map(|(values, _)| values.iter().copied()).collect();
+    let values = sorted(&values);
+    let [low, middle, high] = [0.02, 0.5, 0.98].map(|share| quantile_of_sorted(&values, share));
+    let ground = high - middle > LOPSIDED * (middle - low);
+    if ground == (id == "soft_ground") {
+        return;
+    }
+    let rival = one.rivals[place].0;
+    if let Some(trial) = pool.trials.iter().find(|trial| trial.cause == rival) {
+        one.rivals[place].0 = one.trial.cause;
+        one.trial = Trial { columns: one.trial.columns.clone(), ..trial.clone() };
+    }
 }

@@ -311,11 +311,16 @@ pub fn corrected(drives: &[Drive0], id: &str, value: f64) -> Result<Vec<Drive0>,
             if let Some((name, values)) = changed {
                 drive.measured.trace = with_channel(trace, name, values)?;
             }
-            if id == "force_scale"
-                && let Some(force) = &mut drive.force_n
-            {
-                for sample in force {
+            if id == "force_scale" {
+                for sample in drive.force_n.iter_mut().flatten() {
                     *sample /= 1.0 + value;
+                }
+                for name in ["tractive_force_n", "motor_torque_n_m", "engine_torque_n_m"] {
+                    let trace = &drive.measured.trace;
+                    if let Some(values) = trace.get(name) {
+                        let values = values.iter().map(|sample| sample / (1.0 + value)).collect();
+                        drive.measured.trace = with_channel(trace, name, values)?;
+                    }
                 }
             }
             if let Some(speed) = drive.measured.trace.get("speed_m_s") {

@@ -39,30 +39,25 @@ fn corrected(text: &str, (channel, latency_s, scale, bias): &Correction) -> Resu
         node.field("is")
             .is_some_and(|field| matches!(&field.value.shape, Shape::Text(name) if name == channel))
     };
-    let (at, end, piece) = match &channels {
-        Some((values, span)) => match values.iter().find(is) {
-            Some(node) => match node.field("sensor") {
-                Some(field) => {
-                    let noise = field.value.field("noise").map_or(String::new(), |noise| {
-                        format!("noise: {}, ", &text[noise.value.span.clone()])
-                    });
-                    let sensor = sensor.replacen('(', &format!("({noise}"), 1);
-                    (field.key_span.start, field.value.span.end, sensor)
-                }
-                None => (node.span.end - 1, node.span.end - 1, format!(", {sensor}")),
-            },
-            None => {
-                let open = span.start + 1;
-                (open, open, format!("(column: \"{channel}\", is: \"{channel}\", {sensor}),"))
-            }
-        },
-        None => {
-            let end = match &document.tree().shape {
-                Shape::Struct { fields, .. } => fields.last().map_or(1, |field| field.value.span.end),
-                _ => 1,
-            };
-            (end, end, format!(",\n    channels: [(column: \"{channel}\", is: \"{channel}\", {sensor})]"))
-        }
+    let described = channels.as_ref().and_then(|(values, _)| values.iter().find(is));
+    let known = described.and_then(|node| node.field("sensor"));
+    let (at, end, piece) = if let Some(field) = known {
+        let noise = field
+            .value
+            .field("noise")
+            .map_or(String::new(), |noise| format!("noise: {}, ", &text[noise.value.span.clone()]));
+        (field.key_span.start, field.value.span.end, sensor.replacen('(', &format!("({noise}"), 1))
+    } else if let Some(node) = described {
+        (node.span.end - 1, node.span.end - 1, format!(", {sensor}"))
+    } else if let Some((_, span)) = &channels {
+        let open = span.start + 1;
+        (open, open, format!("(column: \"{channel}\", is: \"{channel}\", {sensor}),"))
+    } else {
+        let end = match &document.tree().shape {
+            Shape::Struct { fields, .. } => fields.last().map_or(1, |field| field.value.span.end),
+            _ => 1,
+        };
+        (end, end, format!(",\n    channels: [(column: \"{channel}\", is: \"{channel}\", {sensor})]"))
     };
     Ok(format!("{}{piece}{}", &text[..at], &text[end..]))
 }

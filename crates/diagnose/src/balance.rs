@@ -72,8 +72,6 @@ pub struct Drive0 {
     pub position_m: Vec<f64>,
     /// The ground that it drove over: runs of the same number share it.
     pub path: usize,
-    /// Whether positions are known to mean the same place in different runs.
-    pub reversed: bool,
     /// How many runs drove this path before.
     pub pass: usize,
     /// Force at the wheels that was measured [N]; NaN where it is not known.
@@ -88,8 +86,6 @@ pub struct Balance {
     pub chunks: Vec<Chunk>,
     /// Covariance of sensor noise.
     pub shape: Shape,
-    /// Length of a block [s].
-    pub block_s: f64,
     /// Measured minus modelled, with the nominal model.
     pub residual: Column,
 }
@@ -109,8 +105,6 @@ pub struct Said {
     pub battery_w: Option<Vec<f64>>,
     /// Power in the fuel [W], as its mass flow times a constant.
     pub fuel_kg_s: Option<Vec<f64>>,
-    /// Force at the wheels [N].
-    pub tractive_n: Vec<f64>,
 }
 
 impl Balance {
@@ -158,7 +152,6 @@ pub fn drives(study: &Study, recording: &headland_recording::Recording, model: &
             acceleration_m_s2: motion.slope.clone(),
             motion,
             path,
-            reversed: recorded.reversed,
             pass,
             force_n,
             measured: measured.clone(),
@@ -169,7 +162,11 @@ pub fn drives(study: &Study, recording: &headland_recording::Recording, model: &
 
 /// The force at the wheels that a recording knows.
 fn force(trace: &Trace, model: &Model, speed: &[f64]) -> Option<Vec<f64>> {
-    let mut force = match (trace.get("tractive_force_n"), trace.get("motor_torque_n_m"), trace.get("engine_torque_n_m")) {
+    let mut force = match (
+        trace.get("tractive_force_n"),
+        trace.get("motor_torque_n_m"),
+        trace.get("engine_torque_n_m"),
+    ) {
         (Some(force), _, _) => Some(force.to_vec()),
         (None, Some(torque), _) | (None, None, Some(torque)) => {
             let of = |(torque, speed): (&f64, &f64)| model.driveline.force_of_torque_n(*torque, *speed);
@@ -188,7 +185,8 @@ fn force(trace: &Trace, model: &Model, speed: &[f64]) -> Option<Vec<f64>> {
                 }
             }
             None if coasting.iter().any(|value| free(*value)) => {
-                force = Some(coasting.iter().map(|value| if free(*value) { 0.0 } else { f64::NAN }).collect());
+                force =
+                    Some(coasting.iter().map(|value| if free(*value) { 0.0 } else { f64::NAN }).collect());
             }
             None => {}
         }
@@ -219,19 +217,24 @@ pub fn said(
 fn say(model: &Model, drive: &Drive0, trace: &Trace, kinds: &[Kind]) -> Result<Said, DiagnoseError> {
     // Driven by the recorded force the model's own acceleration holds no noise of the recorded speed.
     let how = match forward(drive) {
-        Some(forward) => Replay { drive: forward, window_s: Some(MOTION_WINDOW_S), ..drive.measured.how.clone() },
+        Some(forward) => {
+            Replay { drive: forward, window_s: Some(MOTION_WINDOW_S), ..drive.measured.how.clone() }
+        }
         None => Replay { drive: Drive::Speed, window_s: None, ..drive.measured.how.clone() },
     };
     let how = Replay { also: inputs(trace, &how), ..how };
     let failed = |error| DiagnoseError::Replay { run: drive.measured.id.clone(), error };
     let modelled = replay(model, trace, &how).map_err(failed)?.trace;
     let get = |name: &str| modelled.get(name).map(<[f64]>::to_vec).unwrap_or_default();
-    let (tractive, acceleration, mass) = (get("tractive_force_n"), get("acceleration_m_s2"), get("effective_mass_kg"));
+    let (tractive, acceleration, mass) =
+        (get("tractive_force_n"), get("acceleration_m_s2"), get("effective_mass_kg"));
     let brake = modelled.get("brake_force_n").map_or_else(|| vec![0.0; tractive.len()], <[f64]>::to_vec);
-    let resistance_n = (0..tractive.len()).map(|i| tractive[i] - brake[i] - mass[i] * acceleration[i]).collect();
+    let resistance_n =
+        (0..tractive.len()).map(|i| tractive[i] - brake[i] - mass[i] * acceleration[i]).collect();
     let slope_m_s2 = get("grade").iter().map(|grade| model.gravity_m_s2 * grade / grade.hypot(1.0)).collect();
     let powers = kinds.iter().any(|kind| matches!(kind, Kind::Battery | Kind::Fuel));
-    let by_torque = trace.get("motor_torque_n_m").is_some() && model.driveline.force_of_torque_n(1.0, 1.0).is_some();
+    let by_torque =
+        trace.get("motor_torque_n_m").is_some() && model.driveline.force_of_torque_n(1.0, 1.0).is_some();
     let powered = if powers && by_torque {
         let how = Replay { drive: Drive::Torque, window_s: Some(POWER_WINDOW_S), ..how };
         replay(model, trace, &how).map_err(failed)?.trace
@@ -250,7 +253,6 @@ fn say(model: &Model, drive: &Drive0, trace: &Trace, kinds: &[Kind]) -> Result<S
         wheel_speed_m_s: get("wheel_speed_m_s"),
         battery_w,
         fuel_kg_s,
-        tractive_n: tractive,
     })
 }
 
@@ -271,10 +273,11 @@ pub fn forward(drive: &Drive0) -> Option<Drive> {
 
 /// Every recorded circumstance, whatever the scenario's replay is told.
 fn inputs(trace: &Trace, how: &Replay) -> Vec<Inputs> {
-    let whole = |name: &&str| trace.get(name).is_some_and(|values| values.iter().all(|value| value.is_finite()));
+    let whole =
+        |name: &&str| trace.get(name).is_some_and(|values| values.iter().all(|value| value.is_finite()));
     let mut also = how.also.clone();
     for input in [Inputs::Coasting, Inputs::Curvature, Inputs::AirTemperature, Inputs::Heading] {
-        if !also.contains(&input) && input.channels().iter().all(|name| whole(name)) {
+        if !also.contains(&input) && input.channels().iter().all(&whole) {
             also.push(input);
         }
     }
@@ -283,7 +286,9 @@ fn inputs(trace: &Trace, how: &Replay) -> Vec<Inputs> {
 
 /// The balances that the channels allow.
 pub fn kinds(drives: &[Drive0], said: &[Said]) -> Vec<Kind> {
-    let any = |test: &dyn Fn(&Drive0, &Said) -> bool| drives.iter().zip(said).any(|(drive, said)| test(drive, said));
+    let any = |test: &dyn Fn(&Drive0, &Said) -> bool| {
+        drives.iter().zip(said).any(|(drive, said)| test(drive, said))
+    };
     let has = |drive: &Drive0, name: &str| drive.measured.trace.get(name).is_some();
     Kind::ORDER
         .into_iter()
@@ -318,7 +323,8 @@ pub fn balance(kind: Kind, drives: &[Drive0], said: &[Said], block_s: f64) -> Ba
         let usable = usable(kind, drive, said);
         all.extend(chunks(index, drive.measured.trace.time_s(), &usable, block_s));
     }
-    let shape = if matches!(kind, Kind::Motion | Kind::Parity) { Shape::Differenced } else { Shape::Averaged };
+    let shape =
+        if matches!(kind, Kind::Motion | Kind::Parity) { Shape::Differenced } else { Shape::Averaged };
     let residual = all
         .iter()
         .map(|chunk| {
@@ -326,7 +332,7 @@ pub fn balance(kind: Kind, drives: &[Drive0], said: &[Said], block_s: f64) -> Ba
             residual(kind, drive, said, chunk)
         })
         .collect();
-    Balance { kind, chunks: all, shape, block_s, residual }
+    Balance { kind, chunks: all, shape, residual }
 }
 
 fn usable(kind: Kind, drive: &Drive0, said: &Said) -> Vec<bool> {
@@ -347,10 +353,14 @@ fn usable(kind: Kind, drive: &Drive0, said: &Said) -> Vec<bool> {
                         && braked.is_none_or(|brake| brake[i] < 0.5)
                 }
                 Kind::Parity => moving && finite(channel("specific_force_m_s2")),
-                Kind::Slip => moving && finite(channel("wheel_speed_m_s")) && finite(Some(&said.wheel_speed_m_s)),
+                Kind::Slip => {
+                    moving && finite(channel("wheel_speed_m_s")) && finite(Some(&said.wheel_speed_m_s))
+                }
                 Kind::Battery => finite(channel("battery_power_w")) && finite(said.battery_w.as_deref()),
                 Kind::Fuel => {
-                    finite(channel("fuel_rate_kg_s")) && finite(said.fuel_kg_s.as_deref()) && drive.measured.compared[i]
+                    finite(channel("fuel_rate_kg_s"))
+                        && finite(said.fuel_kg_s.as_deref())
+                        && drive.measured.compared[i]
                 }
                 Kind::Shaft => false,
             }
@@ -374,9 +384,12 @@ pub fn residual(kind: Kind, drive: &Drive0, said: &Said, chunk: &Chunk) -> DVect
             row.mean(channel("specific_force_m_s2")) - slope - row.mean(&said.slope_m_s2)
         }
         Kind::Slip => row.mean(channel("wheel_speed_m_s")) - row.mean(&said.wheel_speed_m_s),
-        Kind::Battery => row.mean(channel("battery_power_w")) - row.mean(said.battery_w.as_deref().unwrap_or(&zero)),
+        Kind::Battery => {
+            row.mean(channel("battery_power_w")) - row.mean(said.battery_w.as_deref().unwrap_or(&zero))
+        }
         Kind::Fuel => {
-            FUEL_J_KG * (row.mean(channel("fuel_rate_kg_s")) - row.mean(said.fuel_kg_s.as_deref().unwrap_or(&zero)))
+            FUEL_J_KG
+                * (row.mean(channel("fuel_rate_kg_s")) - row.mean(said.fuel_kg_s.as_deref().unwrap_or(&zero)))
         }
         Kind::Shaft => 0.0,
     };

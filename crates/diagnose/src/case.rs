@@ -1,10 +1,10 @@
 //! What is diagnosed: a scenario, a recording, and everything that is prepared once.
 
+use crate::DiagnoseError;
 use crate::balance::{Balance, Drive0, Kind, Said, balance, block_s, drives, kinds, locate, said};
 use crate::catalogue::{Around, Cause, Form, causes};
 use crate::gram::Column;
 use crate::profile::Profile;
-use crate::DiagnoseError;
 use headland_calibrate::study::Study;
 use headland_plugin::{Registry, closest};
 use headland_recording::Recording;
@@ -191,18 +191,22 @@ impl<'a> Case<'a> {
         speeds.sort_by(f64::total_cmp);
         let quantile = |share: f64| {
             // A share of a length.
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and the length")]
+            #[allow(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "between 0 and the length"
+            )]
             let index = (share * speeds.len().saturating_sub(1) as f64) as usize;
             speeds.get(index).copied().unwrap_or(1.0)
         };
         let names = self.drives.first().map(|drive| drive.measured.trace.channels()).unwrap_or_default();
-        let everywhere = |name: &str| self.drives.iter().all(|drive| drive.measured.trace.get(name).is_some());
-        let (mut coasts, mut drives) = (false, false);
+        let everywhere =
+            |name: &str| self.drives.iter().all(|drive| drive.measured.trace.get(name).is_some());
+        let mut drives = false;
         for drive in &self.drives {
             let coasting = drive.measured.trace.get("coasting");
             for (index, force) in drive.force_n.iter().flatten().enumerate() {
                 let free = coasting.is_some_and(|coasting| coasting[index] >= 0.5);
-                coasts |= free;
                 drives |= !free && force.is_finite() && *force != 0.0;
             }
         }
@@ -210,7 +214,8 @@ impl<'a> Case<'a> {
         for drive in &self.drives {
             passes[drive.path] += 1;
         }
-        let temperatures = self.drives.iter().filter_map(|drive| drive.measured.trace.get("air_temperature_c"));
+        let temperatures =
+            self.drives.iter().filter_map(|drive| drive.measured.trace.get("air_temperature_c"));
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for value in temperatures.flatten().filter(|value| value.is_finite()) {
             (low, high) = (low.min(*value), high.max(*value));
@@ -232,7 +237,6 @@ impl<'a> Case<'a> {
                 .map(|channel| channel.name.clone())
                 .filter(|name| everywhere(name))
                 .collect(),
-            coasts,
             drives: drives || self.drives.iter().all(|drive| drive.force_n.is_none()),
             passes: passes.into_iter().max().unwrap_or(1),
             temperatures_k: (high - low).max(0.0),
@@ -260,7 +264,8 @@ fn bound(causes: &mut [Cause], registry: &Registry) {
         let Some(card) = registry.effects.card(cause.id) else { continue };
         for term in &mut cause.terms {
             let parameter = card.parameters.iter().find(|parameter| parameter.name == term.name);
-            let positive = parameter.is_some_and(|one| matches!(one.bound, NotNegative | Positive | Efficiency));
+            let positive =
+                parameter.is_some_and(|one| matches!(one.bound, NotNegative | Positive | Efficiency));
             term.positive |= positive;
         }
     }

@@ -42,8 +42,6 @@ pub struct Around {
     pub duration_s: f64,
     /// Channels that every run has.
     pub channels: Vec<String>,
-    /// Whether any sample coasts.
-    pub coasts: bool,
     /// Whether force or torque drives somewhere.
     pub drives: bool,
     /// Largest number of runs on one path.
@@ -155,14 +153,20 @@ impl Cause {
             "cornering_drag" => {
                 format!("cornering_drag(cornering_stiffness_n_per_rad: {:?})", 1.0 / values[0].max(1e-12))
             }
-            "variator_loss" => format!("variator_loss(loss: {:?}, node_speeds_m_s: [{:?}])", values[0], values[1]),
+            "variator_loss" => {
+                format!("variator_loss(loss: {:?}, node_speeds_m_s: [{:?}])", values[0], values[1])
+            }
             "shift_transient" => format!(
                 "shift_transient(force_n: {:?}, speeds_m_s: [{:?}], width_m_s: {:?})",
                 values[0], values[1], values[2]
             ),
             _ => {
-                let fields: Vec<String> =
-                    self.terms.iter().zip(values).map(|(term, value)| format!("{}: {value:?}", term.name)).collect();
+                let fields: Vec<String> = self
+                    .terms
+                    .iter()
+                    .zip(values)
+                    .map(|(term, value)| format!("{}: {value:?}", term.name))
+                    .collect();
                 format!("{}({})", self.id, fields.join(", "))
             }
         }
@@ -170,6 +174,7 @@ impl Cause {
 }
 
 /// The causes that the recording could show at all.
+#[allow(clippy::too_many_lines, reason = "a table")]
 pub fn causes(around: &Around) -> Vec<Cause> {
     let weight = around.mass_kg * around.gravity_m_s2;
     let has = |name: &str| around.channels.iter().any(|channel| channel == name);
@@ -334,7 +339,13 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             "a drag that sets in above a speed",
             "hold speeds just below and just above",
         )
-        .shaped(around.speeds_m_s.iter().flat_map(|v| [vec![*v, 0.1 * v.max(0.5)], vec![*v, 0.5 * v.max(0.5)]]).collect()),
+        .shaped(
+            around
+                .speeds_m_s
+                .iter()
+                .flat_map(|v| [vec![*v, 0.1 * v.max(0.5)], vec![*v, 0.5 * v.max(0.5)]])
+                .collect(),
+        ),
     ];
     if has("curvature_per_m") {
         all.push(cause(
@@ -348,16 +359,18 @@ pub fn causes(around: &Around) -> Vec<Cause> {
         ));
     }
     if around.passes > 2 {
-        all.push(cause(
-            "multipass",
-            MOTION,
-            vec![linear("coefficient", "1", 0.03), shape("factor", "1")],
-            "F = c (fⁿ⁻¹ − 1) N",
-            &["position_m"],
-            "ground that firms with every pass",
-            "drive a fresh lane beside the old one",
-        )
-        .shaped(vec![vec![0.9], vec![0.7]]));
+        all.push(
+            cause(
+                "multipass",
+                MOTION,
+                vec![linear("coefficient", "1", 0.03), shape("factor", "1")],
+                "F = c (fⁿ⁻¹ − 1) N",
+                &["position_m"],
+                "ground that firms with every pass",
+                "drive a fresh lane beside the old one",
+            )
+            .shaped(vec![vec![0.9], vec![0.7]]),
+        );
     }
     if around.drives {
         all.push(cause(
@@ -385,7 +398,11 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             cause(
                 "shift_transient",
                 &[Kind::Motion],
-                vec![positive("force_n", "N", 0.03 * weight), shape("speed_m_s", "m/s"), shape("width_m_s", "m/s")],
+                vec![
+                    positive("force_n", "N", 0.03 * weight),
+                    shape("speed_m_s", "m/s"),
+                    shape("width_m_s", "m/s"),
+                ],
                 "F = F₀ e^(−½((v − v_s)/b)²)",
                 &["speed_m_s"],
                 "losses while ranges are shifted",
@@ -531,15 +548,13 @@ fn sensors(all: &mut Vec<Cause>, around: &Around) {
         "an accelerometer that pitches with the body",
         "log the pitch rate",
     ));
-    all.push(
-        cause(
-            "wheel_slip",
-            &[Kind::Slip],
-            vec![positive("coefficient", "1", 0.15)],
-            "s = k F / N",
-            &["tractive_force_n"],
-            "slip of the driven wheels",
-            "pull two loads at one speed",
-        ),
-    );
+    all.push(cause(
+        "wheel_slip",
+        &[Kind::Slip],
+        vec![positive("coefficient", "1", 0.15)],
+        "s = k F / N",
+        &["tractive_force_n"],
+        "slip of the driven wheels",
+        "pull two loads at one speed",
+    ));
 }

@@ -45,8 +45,6 @@ pub struct Estimate {
     pub covariance: DMatrix<f64>,
     /// ln p(r).
     pub log_evidence: f64,
-    /// rᵀΣ⁻¹r of what is left, without the prior's part.
-    pub cost: f64,
 }
 
 impl Whitened {
@@ -100,14 +98,15 @@ impl Whitened {
 
 impl Reduced {
     fn chosen(&self, used: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
-        let matrix = DMatrix::from_fn(used.len(), used.len(), |row, column| self.matrix[(used[row], used[column])]);
+        let matrix =
+            DMatrix::from_fn(used.len(), used.len(), |row, column| self.matrix[(used[row], used[column])]);
         (matrix, DVector::from_iterator(used.len(), used.iter().map(|index| self.vector[*index])))
     }
 
     /// Estimates with the columns `used`, each with its prior standard deviation (zero mean).
     pub fn estimate(&self, used: &[usize], sd: &[f64]) -> Option<Estimate> {
         let (matrix, vector) = self.chosen(used);
-        let mut information = matrix.clone();
+        let mut information = matrix;
         for (row, index) in used.iter().enumerate() {
             information[(row, row)] += sd[*index].powi(-2);
         }
@@ -121,14 +120,7 @@ impl Reduced {
         let explained = beta.dot(&vector);
         let deviance = self.scalar - explained + self.log_determinant + log - prior
             + self.rows as f64 * (2.0 * std::f64::consts::PI).ln();
-        let cost = self.scalar - 2.0 * explained + beta.dot(&(&matrix * &beta));
-        Some(Estimate { beta, covariance: cholesky.inverse(), log_evidence: -0.5 * deviance, cost })
-    }
-
-    /// The cost of what is left when the columns `used` have the values `beta`.
-    pub fn cost(&self, used: &[usize], beta: &DVector<f64>) -> f64 {
-        let (matrix, vector) = self.chosen(used);
-        self.scalar - 2.0 * beta.dot(&vector) + beta.dot(&(matrix * beta))
+        Some(Estimate { beta, covariance: cholesky.inverse(), log_evidence: -0.5 * deviance })
     }
 
     /// Squared correlation of two groups of columns, once `nuisance` is projected out: the largest canonical one.

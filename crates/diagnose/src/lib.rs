@@ -28,8 +28,8 @@ pub use balance::Kind;
 pub use case::{Options, Progress};
 pub use error::DiagnoseError;
 pub use report::{
-    Calibrated, Diagnosed, Diagnosis, FindingKind, FindingReport, Fit, FitRuns, Interval, ParameterReport, Rival,
-    Tried, Verdict,
+    Calibrated, Diagnosed, Diagnosis, FindingKind, FindingReport, Fit, FitRuns, Interval, LeftOver,
+    ParameterReport, Rival, Tried, Verdict,
 };
 
 pub(crate) use case::Case;
@@ -58,16 +58,58 @@ pub fn diagnose(
         channels.dedup();
         return Err(DiagnoseError::NoBalance { channels });
     }
-    let pools = trial::pools(&case, &balances, &case.causes)?;
-    let mut found = Vec::new();
-    for (balance, pool) in balances.iter().zip(&pools) {
-        progress.step(balance.kind.name());
-        if progress.interrupted() {
-            return Err(DiagnoseError::Interrupted);
-        }
-        found.push(search::search(&case, balance, pool, &case.causes, &case.banned()));
+    let mut pools = trial::pools(&case, &balances, &case.causes)?;
+    let mut found = search_all(&case, &balances, &pools)?;
+    if sharpen(&case, &balances, &mut pools, &found)? {
+        found = search_all(&case, &balances, &pools)?;
     }
     let refined = refine::refine(&case, &balances, &pools, &found)?;
     let proof = prove::prove(&case, &balances, &refined)?;
     report::report(&case, &balances, &pools, &found, &refined, &proof)
+}
+
+fn search_all(
+    case: &Case,
+    balances: &[balance::Balance],
+    pools: &[trial::Pool],
+) -> Result<Vec<Option<search::Found>>, DiagnoseError> {
+    let mut found = Vec::new();
+    for (balance, pool) in balances.iter().zip(pools) {
+        case.progress.step(balance.kind.name());
+        if case.progress.interrupted() {
+            return Err(DiagnoseError::Interrupted);
+        }
+        found.push(search::search(case, balance, pool, &case.causes, &case.banned()));
+    }
+    Ok(found)
+}
+
+/// Adds trials at the fitted values of non-linear parameters: what lies between the points of a grid must not be left
+/// for another cause to explain. Whether there was anything to add.
+fn sharpen(
+    case: &Case,
+    balances: &[balance::Balance],
+    pools: &mut [trial::Pool],
+    found: &[Option<search::Found>],
+) -> Result<bool, DiagnoseError> {
+    let mut added = false;
+    for (index, found) in found.iter().enumerate() {
+        let Some(found) = found else { continue };
+        let Some(first) = found.accepted.first().filter(|one| !one.trial.shape.is_empty()) else { continue };
+        let fitted = refine::shape(case, &balances[index], found, first)?;
+        if fitted != first.trial.shape {
+            trial::add_trial(case, balances, pools, first.trial.cause, &fitted)?;
+            // A rival of the same kind gets the same chance.
+            let names = |cause: usize| -> Vec<&str> {
+                case.causes[cause].terms.iter().filter(|term| !term.linear).map(|term| term.name).collect()
+            };
+            for (rival, _, _) in &first.rivals {
+                if names(*rival) == names(first.trial.cause) {
+                    trial::add_trial(case, balances, pools, *rival, &fitted)?;
+                }
+            }
+            added = true;
+        }
+    }
+    Ok(added)
 }

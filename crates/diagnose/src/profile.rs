@@ -66,7 +66,11 @@ impl Profile<'_> {
                 let range = (to - from).max(1e-9);
                 let step = (spread.length / KNOTS_PER_LENGTH).max(range / MOST_KNOTS);
                 // Between 2 and some hundreds.
-                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small and positive")]
+                #[allow(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "small and positive"
+                )]
                 let count = (range / step).ceil() as usize + 1;
                 Group { from: *from, step, count: count.max(2) }
             })
@@ -74,7 +78,13 @@ impl Profile<'_> {
     }
 
     /// Eliminates the function from a whitened problem.
-    pub fn eliminate(&self, whitened: &Whitened, chunks: &[Chunk], fit: &[bool], spread: &Spread) -> Option<Reduced> {
+    pub fn eliminate(
+        &self,
+        whitened: &Whitened,
+        chunks: &[Chunk],
+        fit: &[bool],
+        spread: &Spread,
+    ) -> Option<Reduced> {
         let groups = self.groups(spread);
         let mut reduced = whitened.reduced(chunks, fit);
         for (number, group) in groups.iter().enumerate() {
@@ -109,7 +119,9 @@ impl Profile<'_> {
                 let size = DVector::from_element(group.count, spread.size);
                 (DVector::zeros(group.count), size)
             };
-            let Some(parts) = self.parts(whitened, chunks, fit, number, group, spread) else { return nothing() };
+            let Some(parts) = self.parts(whitened, chunks, fit, number, group, spread) else {
+                return nothing();
+            };
             let Some(cholesky) = parts.matrix.cholesky() else { return nothing() };
             let mut right = parts.cross.column(parts.cross.ncols() - 1).into_owned();
             for (index, column) in used.iter().enumerate() {

@@ -67,10 +67,15 @@ pub fn prove(case: &Case, balances: &[Balance], refined: &Refined) -> Result<Pro
         _ => rows(case, balances, &drives, refined, &effects, signal)?,
     };
     let over = |wanted: bool| {
-        let chosen: Vec<&Errors> =
-            errors.iter().zip(&case.fit).filter(|(_, fit)| **fit == wanted).map(|(errors, _)| errors).collect();
+        let chosen: Vec<&Errors> = errors
+            .iter()
+            .zip(&case.fit)
+            .filter(|(_, fit)| **fit == wanted)
+            .map(|(errors, _)| errors)
+            .collect();
         let root = |of: fn(&Errors) -> f64| {
-            let squares: Vec<f64> = chosen.iter().map(|one| of(one).powi(2)).filter(|value| value.is_finite()).collect();
+            let squares: Vec<f64> =
+                chosen.iter().map(|one| of(one).powi(2)).filter(|value| value.is_finite()).collect();
             (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
         };
         (!chosen.is_empty()).then(|| Errors { before: root(|one| one.before), after: root(|one| one.after) })
@@ -149,7 +154,8 @@ fn text(case: &Case, cured: &Cured, run: usize) -> Option<String> {
     let group = if over_position { drive.path } else { run };
     let knots = function.knots(group);
     let values: Vec<f64> = function.values[group].0.iter().copied().collect();
-    let list = |values: &[f64]| values.iter().map(|value| format!("{value:.6?}")).collect::<Vec<_>>().join(", ");
+    let list =
+        |values: &[f64]| values.iter().map(|value| format!("{value:.6?}")).collect::<Vec<_>>().join(", ");
     let edges = |knots: &[f64]| {
         // Steps change half way between knots.
         let mut edges: Vec<f64> = knots.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
@@ -167,7 +173,9 @@ fn text(case: &Case, cured: &Cured, run: usize) -> Option<String> {
             }
             format!("soft_ground(positions_m: [{}], coefficients: [{}])", list(&edges), list(&values))
         }
-        "payload_change" => format!("payload_change(times_s: [{}], masses_kg: [{}])", list(&knots), list(&values)),
+        "payload_change" => {
+            format!("payload_change(times_s: [{}], masses_kg: [{}])", list(&knots), list(&values))
+        }
         _ => {
             let mut edges = edges(&knots);
             if let (Some(last), Some(before)) = (knots.last(), knots.iter().rev().nth(1)) {

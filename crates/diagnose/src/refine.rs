@@ -124,9 +124,25 @@ fn linear(
     }
 }
 
+/// The non-linear parameters of one cause, fitted without any other.
+pub fn shape(
+    case: &Case,
+    balance: &Balance,
+    found: &Found,
+    accepted: &Accepted,
+) -> Result<Vec<f64>, DiagnoseError> {
+    let free: Vec<(String, f64, f64, [f64; 2])> =
+        case.study.parameters.iter().map(|one| (one.name.clone(), one.value, one.value, [0.0; 2])).collect();
+    let (_, cured) = nonlinear(case, balance, found, &free, &[], &[accepted])?;
+    let Some(cured) = cured.first() else { return Ok(accepted.trial.shape.clone()) };
+    let held = cured.cause.terms.iter().zip(&cured.values).filter(|(term, _)| !term.linear);
+    Ok(held.map(|(_, (value, _))| *value).collect())
+}
+
 /// A parameter of a new cause: which cause, which term.
 type Slot = (usize, usize);
 
+#[allow(clippy::too_many_lines, reason = "one problem, set up and solved")]
 fn nonlinear(
     case: &Case,
     balance: &Balance,
@@ -145,7 +161,8 @@ fn nonlinear(
         }
     }
     let count = parameters.len();
-    let start: Vec<Vec<(f64, [f64; 2])>> = new.iter().map(|accepted| started(case, accepted, found)).collect();
+    let start: Vec<Vec<(f64, [f64; 2])>> =
+        new.iter().map(|accepted| started(case, accepted, found)).collect();
     let mut slots: Vec<Slot> = Vec::new();
     for (place, accepted) in new.iter().enumerate() {
         let cause = &case.causes[accepted.trial.cause];
@@ -166,7 +183,12 @@ fn nonlinear(
             };
             slots.push((place, index));
             let value = value.clamp(low.min(high), high.max(low));
-            parameters.push(Parameter { name: term.name.to_owned(), value, sd: Some(sd), bounds: (low, high) });
+            parameters.push(Parameter {
+                name: term.name.to_owned(),
+                value,
+                sd: Some(sd),
+                bounds: (low, high),
+            });
         }
     }
     // A sensor's fault keeps its linear estimate: fitted freely it would shrink the noise along with the signal.
@@ -214,12 +236,11 @@ fn nonlinear(
                 Some(whitener) => whitener.whiten(chunk, values),
                 None => values.clone(),
             };
-            match cluster_of.iter().position(|run| *run == chunk.run) {
-                Some(cluster) => clusters[cluster].extend(white.iter()),
-                None => {
-                    cluster_of.push(chunk.run);
-                    clusters.push(white.iter().copied().collect());
-                }
+            if let Some(cluster) = cluster_of.iter().position(|run| *run == chunk.run) {
+                clusters[cluster].extend(white.iter());
+            } else {
+                cluster_of.push(chunk.run);
+                clusters.push(white.iter().copied().collect());
             }
         }
         Ok(clusters)

@@ -200,8 +200,23 @@ pub struct Diagnosed {
     pub effects: Vec<Run>,
     /// Corrections of channels for the improved `recording.ron`: channel, latency [s], scale, bias.
     pub corrections: Vec<(String, f64, f64, f64)>,
-    /// Residual rows of each balance before and after, for pictures: balance, run, time [s], before, after.
-    pub residuals: Vec<(Kind, String, Vec<f64>, Vec<f64>, Vec<f64>)>,
+    /// What every balance leaves over, for pictures.
+    pub residuals: Vec<LeftOver>,
+}
+
+/// What a balance leaves over in one run, row by row.
+#[derive(Clone, Debug)]
+pub struct LeftOver {
+    /// The balance.
+    pub balance: Kind,
+    /// The run.
+    pub run: String,
+    /// Time of each row [s].
+    pub time_s: Vec<f64>,
+    /// Measured minus modelled with the free parameters alone, in the unit of the balance.
+    pub before: Vec<f64>,
+    /// With everything that was found.
+    pub after: Vec<f64>,
 }
 
 /// Puts the answer together.
@@ -214,36 +229,7 @@ pub fn report(
     proof: &Proof,
 ) -> Result<Diagnosed, DiagnoseError> {
     let _ = pools;
-    let mut findings: Vec<FindingReport> = Vec::new();
-    for (cured, effect) in refined.causes.iter().zip(&proof.effects) {
-        let balance = &balances[cured.balance];
-        let share = share(case, balance, found[cured.balance].as_ref(), cured, refined, proof);
-        let parameters = parameters(cured, case);
-        let rivals: Vec<Rival> = cured
-            .accepted
-            .rivals
-            .iter()
-            .map(|(cause, _, correlation)| Rival {
-                id: case.causes[*cause].id.to_owned(),
-                squared_correlation: *correlation,
-            })
-            .collect();
-        findings.push(FindingReport {
-            kind: if cured.cause.class == Class::Physics { FindingKind::Physics } else { FindingKind::Artefact },
-            id: cured.cause.id.to_owned(),
-            balance: balance.kind,
-            sentence: words::sentence(&cured.cause, balance.kind, &parameters, share, &rivals),
-            equation: cured.cause.equation.to_owned(),
-            depends_on: cured.cause.depends_on.iter().map(|name| (*name).to_owned()).collect(),
-            stretches: stretches(&case.drives, &effect.runs),
-            parameters,
-            share_of_mismatch: share,
-            evidence: [cured.accepted.gain, cured.accepted.by_chance],
-            next_experiment: experiment(&cured.cause, cured, case),
-            indistinguishable_from: rivals,
-        });
-    }
-    findings.sort_by(|one, other| other.share_of_mismatch.total_cmp(&one.share_of_mismatch));
+    let findings = findings(case, balances, found, refined, proof);
     let verdict = verdict(&findings);
     let ids = |wanted: bool| -> Vec<String> {
         let chosen = case.drives.iter().zip(&case.fit).filter(|(_, fit)| **fit == wanted);
@@ -267,9 +253,8 @@ pub fn report(
         held_out: proof.held_out.as_ref().map(|errors| runs(false, errors)),
         lack_of_fit: lack,
     };
-    let unit = |name: &str| {
-        headland_units::unit_of_name(name).map_or_else(|| "1".to_owned(), |unit| unit.symbol)
-    };
+    let unit =
+        |name: &str| headland_units::unit_of_name(name).map_or_else(|| "1".to_owned(), |unit| unit.symbol);
     let calibrated = refined
         .free
         .iter()
@@ -283,7 +268,10 @@ pub fn report(
         .collect();
     let mut notes = case.study.notes.clone();
     if case.chosen && ids(false).is_empty() {
-        notes.push("There are too few runs to hold one out, so nothing is proven on runs that were not fitted.".to_owned());
+        notes.push(
+            "There are too few runs to hold one out, so nothing is proven on runs that were not fitted."
+                .to_owned(),
+        );
     } else if case.chosen {
         notes.push(format!("No run was marked `use: held_out`; held out were {}.", ids(false).join(", ")));
     }
@@ -314,6 +302,50 @@ pub fn report(
         corrections: corrections(refined),
         residuals: residuals(case, balances, found),
     })
+}
+
+fn findings(
+    case: &Case,
+    balances: &[Balance],
+    found: &[Option<Found>],
+    refined: &Refined,
+    proof: &Proof,
+) -> Vec<FindingReport> {
+    let mut findings: Vec<FindingReport> = Vec::new();
+    for (cured, effect) in refined.causes.iter().zip(&proof.effects) {
+        let balance = &balances[cured.balance];
+        let share = share(case, balance, found[cured.balance].as_ref(), cured, refined, proof);
+        let parameters = parameters(cured, case);
+        let rivals: Vec<Rival> = cured
+            .accepted
+            .rivals
+            .iter()
+            .map(|(cause, _, correlation)| Rival {
+                id: case.causes[*cause].id.to_owned(),
+                squared_correlation: *correlation,
+            })
+            .collect();
+        findings.push(FindingReport {
+            kind: if cured.cause.class == Class::Physics {
+                FindingKind::Physics
+            } else {
+                FindingKind::Artefact
+            },
+            id: cured.cause.id.to_owned(),
+            balance: balance.kind,
+            sentence: words::sentence(&cured.cause, balance.kind, &parameters, share, &rivals),
+            equation: cured.cause.equation.to_owned(),
+            depends_on: cured.cause.depends_on.iter().map(|name| (*name).to_owned()).collect(),
+            stretches: stretches(&case.drives, &effect.runs),
+            parameters,
+            share_of_mismatch: share,
+            evidence: [cured.accepted.gain, cured.accepted.by_chance],
+            next_experiment: experiment(&cured.cause, cured, case),
+            indistinguishable_from: rivals,
+        });
+    }
+    findings.sort_by(|one, other| other.share_of_mismatch.total_cmp(&one.share_of_mismatch));
+    findings
 }
 
 fn tried(case: &Case, balances: &[Balance], found: &[Option<Found>]) -> Vec<Tried> {
@@ -378,9 +410,8 @@ fn share(
         let column = crate::balance::column(&balance.chunks, &proof.effects[index].runs);
         mean_square(&column)
     };
-    let same: Vec<usize> = (0..refined.causes.len())
-        .filter(|index| refined.causes[*index].balance == cured.balance)
-        .collect();
+    let same: Vec<usize> =
+        (0..refined.causes.len()).filter(|index| refined.causes[*index].balance == cured.balance).collect();
     let all: f64 = same.iter().map(|index| size(*index)).sum();
     let own = same
         .iter()
@@ -521,11 +552,7 @@ fn corrections(refined: &Refined) -> Vec<(String, f64, f64, f64)> {
     all
 }
 
-fn residuals(
-    case: &Case,
-    balances: &[Balance],
-    found: &[Option<Found>],
-) -> Vec<(Kind, String, Vec<f64>, Vec<f64>, Vec<f64>)> {
+fn residuals(case: &Case, balances: &[Balance], found: &[Option<Found>]) -> Vec<LeftOver> {
     let mut all = Vec::new();
     for (balance, found) in balances.iter().zip(found) {
         let Some(found) = found else { continue };
@@ -538,7 +565,13 @@ fn residuals(
                     after.push(found.left[index][row]);
                 }
             }
-            all.push((balance.kind, drive.measured.id.clone(), times, before, after));
+            all.push(LeftOver {
+                balance: balance.kind,
+                run: drive.measured.id.clone(),
+                time_s: times,
+                before,
+                after,
+            });
         }
     }
     all

@@ -111,11 +111,17 @@ mod tests {
 
     #[test]
     fn a_gap_and_an_unusable_sample_break_a_chunk() {
-        let time_s: Vec<f64> = (0..100).map(|index| 0.1 * f64::from(index) + if index >= 50 { 3.0 } else { 0.0 }).collect();
+        let time_s: Vec<f64> =
+            (0..100).map(|index| 0.1 * f64::from(index) + if index >= 50 { 3.0 } else { 0.0 }).collect();
         let mut usable = vec![true; 100];
         usable[75] = false;
         let chunks = chunks(0, &time_s, &usable, 0.2);
         assert_eq!(chunks.len(), 3);
-        assert!(chunks.iter().flat_map(|chunk| &chunk.rows).all(|row| !(row.samples[0]..row.samples[2]).contains(&75)));
+        assert!(
+            chunks
+                .iter()
+                .flat_map(|chunk| &chunk.rows)
+                .all(|row| !(row.samples[0]..row.samples[2]).contains(&75))
+        );
     }
 }

@@ -1,14 +1,15 @@
 //! Which causes a balance needs: added one by one while the evidence grows more than chance could make it grow.
 
+use crate::Case;
 use crate::balance::Balance;
 use crate::catalogue::{Cause, Class, Form};
 use crate::gram::{Column, Estimate, Reduced, Whitened};
 use crate::noise::{Noise, Shape};
 use crate::profile::{Function, Profile, Spread};
 use crate::trial::{Pool, Trial};
-use crate::Case;
 use headland_calibrate::statistics::{Draws, quantile_of_sorted, sorted};
 use nalgebra::DVector;
+use rayon::prelude::*;
 
 /// A cause that the balance needs.
 #[derive(Clone, Debug)]
@@ -59,11 +60,14 @@ impl Accepted {
     fn stands_for(&self, id: &str, causes: &[Cause]) -> bool {
         /// Two causes of this squared correlation are one to the data.
         const SAME: f64 = 0.7;
-        let rival = |(cause, _, correlation): &(usize, f64, f64)| causes[*cause].id == id && *correlation > SAME;
+        let rival =
+            |(cause, _, correlation): &(usize, f64, f64)| causes[*cause].id == id && *correlation > SAME;
         causes[self.trial.cause].id == id || self.rivals.iter().any(rival)
     }
 }
 
+/// Beyond this ratio of variances the sensors have no part.
+const MOST_LACK: f64 = 1e4;
 /// A difference of ln p that is none.
 const NEARLY: f64 = 1.0;
 /// At most so many causes.
@@ -84,129 +88,52 @@ const LEAST_SHARE: f64 = 0.03;
 const LEAST_SCALE: f64 = 0.005;
 
 /// Searches one balance.
-pub fn search(case: &Case, balance: &Balance, pool: &Pool, causes: &[Cause], banned: &[&str]) -> Option<Found> {
-    let fit = &case.fit;
-    let nuisance: Vec<usize> = (0..pool.nuisance).collect();
-    let mut used = nuisance.clone();
-    let mut accepted: Vec<Accepted> = Vec::new();
-    let mut function: Option<(usize, Spread)> = None;
-    let mut tried: Vec<Round> = Vec::new();
-    let state = State { case, balance, pool, fit };
-    let (mut noise, mut here) = state.settle(&used, None)?;
+pub fn search(
+    case: &Case,
+    balance: &Balance,
+    pool: &Pool,
+    causes: &[Cause],
+    banned: &[&str],
+) -> Option<Found> {
+    let state = State { case, balance, pool, fit: &case.fit, banned };
+    let used: Vec<usize> = (0..pool.nuisance).collect();
+    let (noise, here) = state.settle(&used, None)?;
     let first_noise = noise;
     let before = state.left(&used, &here.estimate, None);
+    let mut stand = Stand { used, function: None, noise, here };
+    let mut accepted: Vec<Accepted> = Vec::new();
+    let mut tried: Vec<Round> = Vec::new();
     for _ in 0..MOST_CAUSES {
-        let mut contest: Vec<Contest> = Vec::new();
-        let base = here.estimate.log_evidence;
-        for trial in &pool.trials {
-            let cause = &causes[trial.cause];
-            let known = accepted.iter().any(|one| one.stands_for(cause.id, causes));
-            if known || banned.contains(&cause.id) || matches!(cause.form, Form::OverPosition | Form::OverTime) {
-                continue;
-            }
-            let mut with = used.clone();
-            with.extend(&trial.columns);
-            let Some(estimate) = here.reduced.estimate(&with, &pool.sd) else { continue };
-            if impossible(cause, trial, &estimate, used.len()) {
-                continue;
-            }
-            contest.push(Contest { trial: trial.clone(), gain: estimate.log_evidence - base, spread: None });
-        }
-        contest.sort_by(|one, other| other.gain.total_cmp(&one.gain));
-        let by_chance = chance(&state, &here.reduced, &used, causes, banned);
-        contest.truncate(FINALISTS.max(contest.iter().filter(|one| one.gain > contest[0].gain - 10.0).count().min(16)));
-        if function.is_none() {
-            for trial in &pool.trials {
-                let cause = &causes[trial.cause];
-                let known = accepted.iter().any(|one| one.stands_for(cause.id, causes));
-                if known || banned.contains(&cause.id) || !matches!(cause.form, Form::OverPosition | Form::OverTime) {
-                    continue;
-                }
-                if let Some((gain, spread)) = state.best_spread(trial, cause, &used, &noise, base) {
-                    contest.push(Contest { trial: trial.clone(), gain, spread: Some(spread) });
-                }
-            }
-        }
-        // The noise belongs to what is explained: each finalist is judged with its own.
-        let mut judged: Vec<(Contest, Noise, Settled)> = Vec::new();
-        for one in contest {
-            let mut with = used.clone();
-            let mut own = function;
-            if let Some(spread) = one.spread {
-                own = Some((one.trial.columns[0], spread));
-            } else {
-                with.extend(&one.trial.columns);
-            }
-            let Some((noise, settled)) = state.settle_from(&with, own, &noise) else { continue };
-            let gain = settled.estimate.log_evidence - base;
-            judged.push((Contest { gain, ..one }, noise, settled));
-        }
-        // Of two that explain as much, a cause in the world is named before a fault of a sensor.
-        let rank = |one: &Contest| {
-            let artefact = causes[one.trial.cause].class == Class::Artefact;
-            one.gain - if artefact { NEARLY } else { 0.0 }
-        };
-        judged.sort_by(|one, other| rank(&other.0).total_cmp(&rank(&one.0)));
+        let by_chance = state.chance(&stand);
+        let judged = state.judge(state.contest(&stand, &accepted), &stand);
         tried.push(Round {
             by_chance: LEAST_GAIN.max(by_chance),
-            causes: judged.iter().map(|(one, _, _)| (one.trial.cause, one.trial.shape.clone(), one.gain)).collect(),
+            causes: judged.iter().map(|one| (one.trial.cause, one.trial.shape.clone(), one.gain)).collect(),
         });
-        let threshold = LEAST_GAIN.max(by_chance);
-        let mut chosen = None;
-        for (place, (one, noise, _)) in judged.iter().enumerate() {
-            if one.gain < threshold {
-                break;
-            }
-            let mut with = used.clone();
-            let own = match one.spread {
-                Some(spread) => Some((one.trial.columns[0], spread)),
-                None => {
-                    with.extend(&one.trial.columns);
-                    function
-                }
-            };
-            let Some((next_noise, settled)) = state.settle_from(&with, own, noise) else { continue };
-            if state.matters(&with, &settled, &one.trial, own, &next_noise) {
-                chosen = Some((place, with, own, next_noise, settled));
-                break;
-            }
-        }
-        let Some((place, with, own, next_noise, settled)) = chosen else { break };
-        let best = &judged[place].0;
-        let cause = &causes[best.trial.cause];
-        let mut rivals: Vec<(usize, f64, f64)> = Vec::new();
-        for (other, _, _) in judged.iter().skip(place + 1) {
-            let rival = &causes[other.trial.cause];
-            let listed = rivals.iter().any(|(known, _, _)| causes[*known].id == rival.id);
-            if rival.id == cause.id || listed {
-                continue;
-            }
-            let correlation =
-                here.reduced.squared_correlation(&best.trial.columns, &other.trial.columns, &used, &pool.sd);
-            if other.gain > best.gain - TOLERANCE {
-                rivals.push((other.trial.cause, other.gain, correlation));
-            }
-        }
-        accepted.push(Accepted { trial: best.trial.clone(), gain: best.gain, by_chance, rivals, function: None });
-        used = with;
-        function = own;
-        noise = next_noise;
-        here = settled;
+        let Some((place, next)) = state.choose(&judged, &stand, LEAST_GAIN.max(by_chance)) else { break };
+        let best = &judged[place];
+        accepted.push(Accepted {
+            trial: best.trial.clone(),
+            gain: best.gain,
+            by_chance,
+            rivals: state.rivals(best, &judged[place + 1..], &stand),
+            function: None,
+        });
+        stand = next;
     }
-    let made = function.and_then(|own| state.function(&used, &here.estimate, own, &noise, causes));
+    let Stand { used, function, noise, here } = stand;
+    let made = function.and_then(|own| state.function(&used, &here.estimate, own, &noise));
     if let Some((column, function)) = made {
         for one in &mut accepted {
             name_by_shape(one, &function, causes, pool);
-            if one.trial.columns == [column] && matches!(causes[one.trial.cause].form, Form::OverPosition | Form::OverTime) {
+            if one.trial.columns == [column] && over_something(&causes[one.trial.cause]) {
                 one.function = Some(function.clone());
             }
         }
     }
     let shown = accepted.iter().find_map(|one| one.function.as_ref().map(|function| (&one.trial, function)));
-    let left = state.left(&used, &here.estimate, shown.map(|(trial, function)| (trial, &causes[trial.cause], function)));
-    /// Beyond this the sensors have no part.
-    const MOST: f64 = 1e4;
-    let lack = |noise: &Noise| (noise.process / noise.sensor.max(f64::MIN_POSITIVE)).min(MOST);
+    let left = state.left(&used, &here.estimate, shown);
+    let lack = |noise: &Noise| (noise.process / noise.sensor.max(f64::MIN_POSITIVE)).min(MOST_LACK);
     Some(Found {
         tried,
         lack_of_fit: (lack(&first_noise), lack(&noise)),
@@ -219,6 +146,35 @@ pub fn search(case: &Case, balance: &Balance, pool: &Pool, causes: &[Cause], ban
     })
 }
 
+/// Whether a cause is a function of position or time.
+fn over_something(cause: &Cause) -> bool {
+    matches!(cause.form, Form::OverPosition | Form::OverTime)
+}
+
+/// Where the search stands.
+struct Stand {
+    used: Vec<usize>,
+    function: Option<(usize, Spread)>,
+    noise: Noise,
+    here: Settled,
+}
+
+impl Stand {
+    /// The columns and the function that it would have with one more cause.
+    fn with(&self, one: &Contest) -> (Vec<usize>, Option<(usize, Spread)>) {
+        let mut used = self.used.clone();
+        let mut function = self.function;
+        if let Some(spread) = one.spread {
+            function = Some((one.trial.columns[0], spread));
+        } else {
+            used.extend(&one.trial.columns);
+        }
+        (used, function)
+    }
+}
+
+/// A trial in a round.
+#[derive(Clone)]
 struct Contest {
     trial: Trial,
     gain: f64,
@@ -235,9 +191,140 @@ struct State<'a> {
     balance: &'a Balance,
     pool: &'a Pool,
     fit: &'a [bool],
+    banned: &'a [&'a str],
 }
 
 impl State<'_> {
+    fn causes(&self) -> &[Cause] {
+        &self.case.causes
+    }
+
+    /// The trials that are worth judging: by columns, and by functions where there is none yet.
+    fn contest(&self, stand: &Stand, accepted: &[Accepted]) -> Vec<Contest> {
+        /// Trials within this of the best one are judged, though they be many.
+        const CLOSE: f64 = 10.0;
+        let base = stand.here.estimate.log_evidence;
+        let open = |trial: &&Trial| {
+            let id = self.causes()[trial.cause].id;
+            !self.banned.contains(&id) && !accepted.iter().any(|one| one.stands_for(id, self.causes()))
+        };
+        let mut contest: Vec<Contest> = Vec::new();
+        for trial in self.pool.trials.iter().filter(open) {
+            let cause = &self.causes()[trial.cause];
+            if over_something(cause) {
+                continue;
+            }
+            let mut with = stand.used.clone();
+            with.extend(&trial.columns);
+            let Some(estimate) = stand.here.reduced.estimate(&with, &self.pool.sd) else { continue };
+            if !impossible(cause, trial, &estimate, stand.used.len()) {
+                let gain = estimate.log_evidence - base;
+                contest.push(Contest { trial: trial.clone(), gain, spread: None });
+            }
+        }
+        contest.sort_by(|one, other| other.gain.total_cmp(&one.gain));
+        if let Some(best) = contest.first().map(|one| one.gain) {
+            let close = contest.iter().filter(|one| one.gain > best - CLOSE).count();
+            contest.truncate(FINALISTS.max(close.min(2 * FINALISTS)));
+        }
+        if stand.function.is_none() {
+            for trial in self.pool.trials.iter().filter(open) {
+                let cause = &self.causes()[trial.cause];
+                if over_something(cause)
+                    && let Some((gain, spread)) =
+                        self.best_spread(trial, cause, &stand.used, &stand.noise, base)
+                {
+                    contest.push(Contest { trial: trial.clone(), gain, spread: Some(spread) });
+                }
+            }
+        }
+        contest
+    }
+
+    /// The noise belongs to what is explained: each finalist is judged with its own. The best comes first.
+    fn judge(&self, contest: Vec<Contest>, stand: &Stand) -> Vec<Contest> {
+        let base = stand.here.estimate.log_evidence;
+        let own = |one: Contest| {
+            let (used, function) = stand.with(&one);
+            let (_, settled) = self.settle_from(&used, function, &stand.noise)?;
+            Some(Contest { gain: settled.estimate.log_evidence - base, ..one })
+        };
+        let mut judged: Vec<Contest> = contest.into_par_iter().filter_map(own).collect();
+        // Of two that explain as much, a cause in the world is named before a fault of a sensor.
+        let rank = |one: &Contest| {
+            let artefact = self.causes()[one.trial.cause].class == Class::Artefact;
+            one.gain - if artefact { NEARLY } else { 0.0 }
+        };
+        judged.sort_by(|one, other| rank(other).total_cmp(&rank(one)));
+        judged
+    }
+
+    /// The best that exceeds the threshold and matters, and where the search stands with it.
+    fn choose(&self, judged: &[Contest], stand: &Stand, threshold: f64) -> Option<(usize, Stand)> {
+        for (place, one) in judged.iter().enumerate() {
+            if one.gain < threshold {
+                return None;
+            }
+            let (used, function) = stand.with(one);
+            let Some((noise, here)) = self.settle_from(&used, function, &stand.noise) else { continue };
+            if self.matters(&used, &here, &one.trial, function, &noise) {
+                return Some((place, Stand { used, function, noise, here }));
+            }
+        }
+        None
+    }
+
+    /// Causes that explain as much as the best.
+    fn rivals(&self, best: &Contest, others: &[Contest], stand: &Stand) -> Vec<(usize, f64, f64)> {
+        let id = self.causes()[best.trial.cause].id;
+        let mut rivals: Vec<(usize, f64, f64)> = Vec::new();
+        for other in others {
+            let rival = self.causes()[other.trial.cause].id;
+            let listed = rivals.iter().any(|(known, _, _)| self.causes()[*known].id == rival);
+            if rival == id || listed || other.gain <= best.gain - TOLERANCE {
+                continue;
+            }
+            let reduced = &stand.here.reduced;
+            let (one, two) = (&best.trial.columns, &other.trial.columns);
+            let correlation = reduced.squared_correlation(one, two, &stand.used, &self.pool.sd);
+            rivals.push((other.trial.cause, other.gain, correlation));
+        }
+        rivals
+    }
+
+    /// The growth of ln p that the best of all trials reaches by chance once in a hundred, if nothing is missing.
+    fn chance(&self, stand: &Stand) -> f64 {
+        let pool = self.pool;
+        let usable = |trial: &&Trial| {
+            let cause = &self.causes()[trial.cause];
+            !self.banned.contains(&cause.id) && !over_something(cause)
+        };
+        let trials: Vec<&Trial> = pool.trials.iter().filter(usable).collect();
+        let reduced = &stand.here.reduced;
+        let mut jittered = reduced.matrix.clone();
+        for index in 0..jittered.nrows() {
+            jittered[(index, index)] = jittered[(index, index)] * (1.0 + 1e-9) + 1e-300;
+        }
+        let Some(cholesky) = jittered.cholesky() else { return LEAST_GAIN };
+        let factor = cholesky.l();
+        let one = |draw: u64| {
+            let mut draws = Draws::new(self.case.seed, draw);
+            let white = DVector::from_fn(factor.nrows(), |_, _| draws.normal());
+            let mut problem = reduced.clone();
+            problem.vector = &factor * white;
+            problem.scalar = 0.0;
+            let base = problem.estimate(&stand.used, &pool.sd)?;
+            let gain = trials.iter().filter_map(|trial| {
+                let mut with = stand.used.clone();
+                with.extend(&trial.columns);
+                Some(problem.estimate(&with, &pool.sd)?.log_evidence - base.log_evidence)
+            });
+            Some(gain.fold(f64::NEG_INFINITY, f64::max))
+        };
+        let best: Vec<f64> = (0..DRAWS).into_par_iter().filter_map(one).collect();
+        if best.is_empty() { LEAST_GAIN } else { quantile_of_sorted(&sorted(&best), 0.99) }
+    }
+
     fn settle(&self, used: &[usize], own: Option<(usize, Spread)>) -> Option<(Noise, Settled)> {
         let chunks: Vec<_> = self.fit_chunks().cloned().collect();
         let residual: Column = self.fit_rows(&self.balance.residual);
@@ -250,12 +337,19 @@ impl State<'_> {
     }
 
     fn fit_rows(&self, column: &Column) -> Column {
-        let of = |(chunk, values): (&crate::rows::Chunk, &DVector<f64>)| self.fit[chunk.run].then(|| values.clone());
+        let of = |(chunk, values): (&crate::rows::Chunk, &DVector<f64>)| {
+            self.fit[chunk.run].then(|| values.clone())
+        };
         self.balance.chunks.iter().zip(column).filter_map(of).collect()
     }
 
     /// Estimates, and lets the noise follow.
-    fn settle_from(&self, used: &[usize], own: Option<(usize, Spread)>, start: &Noise) -> Option<(Noise, Settled)> {
+    fn settle_from(
+        &self,
+        used: &[usize],
+        own: Option<(usize, Spread)>,
+        start: &Noise,
+    ) -> Option<(Noise, Settled)> {
         const ROUNDS: usize = 15;
         /// A growth of ln p below this is none.
         const SETTLED: f64 = 0.02;
@@ -263,7 +357,8 @@ impl State<'_> {
         let mut noise = *start;
         let mut best: Option<(Noise, Settled)> = None;
         for _ in 0..ROUNDS {
-            let whitened = Whitened::new(&self.balance.chunks, &self.balance.residual, &self.pool.columns, &noise)?;
+            let whitened =
+                Whitened::new(&self.balance.chunks, &self.balance.residual, &self.pool.columns, &noise)?;
             let reduced = match own {
                 None => whitened.reduced(&self.balance.chunks, self.fit),
                 Some((column, spread)) => {
@@ -287,8 +382,9 @@ impl State<'_> {
                 }
             };
             let next = Noise::of(self.balance.shape, &chunks, &self.fit_rows(&left));
-            let better =
-                best.as_ref().is_none_or(|(_, one)| estimate.log_evidence > one.estimate.log_evidence + SETTLED);
+            let better = best
+                .as_ref()
+                .is_none_or(|(_, one)| estimate.log_evidence > one.estimate.log_evidence + SETTLED);
             if !better {
                 break;
             }
@@ -301,7 +397,7 @@ impl State<'_> {
         best
     }
 
-    fn left(&self, used: &[usize], estimate: &Estimate, own: Option<(&Trial, &Cause, &Function)>) -> Column {
+    fn left(&self, used: &[usize], estimate: &Estimate, own: Option<(&Trial, &Function)>) -> Column {
         let mut left = self.balance.residual.clone();
         for (position, index) in used.iter().enumerate() {
             for (chunk, values) in left.iter_mut().zip(&self.pool.columns[*index]) {
@@ -309,7 +405,7 @@ impl State<'_> {
             }
         }
         match own {
-            Some((trial, _, function)) => match self.profile_of(trial.columns[0]) {
+            Some((trial, function)) => match self.profile_of(trial.columns[0]) {
                 Some(profile) => self.minus(left, trial.columns[0], &profile, function),
                 None => left,
             },
@@ -320,9 +416,9 @@ impl State<'_> {
     fn minus(&self, mut left: Column, column: usize, profile: &Profile, function: &Function) -> Column {
         for (index, chunk) in self.balance.chunks.iter().enumerate() {
             let group = profile.group_of[chunk.run];
-            for row in 0..chunk.rows.len() {
-                let value = function.value(group, profile.at[index][row]);
-                left[index][row] -= self.pool.columns[column][index][row] * value;
+            let signature = &self.pool.columns[column][index];
+            for ((left, at), signature) in left[index].iter_mut().zip(&profile.at[index]).zip(signature) {
+                *left -= signature * function.value(group, *at);
             }
         }
         left
@@ -341,7 +437,8 @@ impl State<'_> {
         noise: &Noise,
         base: f64,
     ) -> Option<(f64, Spread)> {
-        let whitened = Whitened::new(&self.balance.chunks, &self.balance.residual, &self.pool.columns, noise)?;
+        let whitened =
+            Whitened::new(&self.balance.chunks, &self.balance.residual, &self.pool.columns, noise)?;
         let profile = self.profile_of(trial.columns[0])?;
         let longest = profile.extents.iter().map(|(from, to)| to - from).fold(0.0, f64::max);
         let lengths: &[f64] = match cause.form {
@@ -370,9 +467,9 @@ impl State<'_> {
         estimate: &Estimate,
         (column, spread): (usize, Spread),
         noise: &Noise,
-        _: &[Cause],
     ) -> Option<(usize, Function)> {
-        let whitened = Whitened::new(&self.balance.chunks, &self.balance.residual, &self.pool.columns, noise)?;
+        let whitened =
+            Whitened::new(&self.balance.chunks, &self.balance.residual, &self.pool.columns, noise)?;
         let profile = self.profile_of(column)?;
         let function =
             profile.function(&whitened, &self.balance.chunks, self.fit, &spread, used, &estimate.beta);
@@ -392,7 +489,8 @@ impl State<'_> {
             return true;
         }
         let own = self.mean_square(&trial.columns, used, settled);
-        let others: Vec<usize> = used.iter().copied().filter(|column| *column >= self.pool.nuisance).collect();
+        let others: Vec<usize> =
+            used.iter().copied().filter(|column| *column >= self.pool.nuisance).collect();
         let all = self.mean_square(&others, used, settled);
         // Differences of speed are noisy row by row and not over a run, so their rows are no measure.
         let heard = match self.balance.shape {
@@ -405,7 +503,8 @@ impl State<'_> {
     /// Mean square of what some columns explain together.
     fn mean_square(&self, columns: &[usize], used: &[usize], settled: &Settled) -> f64 {
         let (mut sum, mut count) = (0.0, 0usize);
-        for (index, chunk) in self.balance.chunks.iter().enumerate().filter(|(_, chunk)| self.fit[chunk.run]) {
+        for (index, chunk) in self.balance.chunks.iter().enumerate().filter(|(_, chunk)| self.fit[chunk.run])
+        {
             let mut effect = DVector::zeros(chunk.rows.len());
             for column in columns {
                 if let Some(position) = used.iter().position(|used| used == column) {
@@ -438,40 +537,9 @@ impl State<'_> {
 
 /// Whether a cause would have to be what it cannot be.
 fn impossible(cause: &Cause, trial: &Trial, estimate: &Estimate, first: usize) -> bool {
-    let positive = |(index, term): (usize, &usize)| cause.terms[*term].positive && estimate.beta[first + index] < 0.0;
+    let positive =
+        |(index, term): (usize, &usize)| cause.terms[*term].positive && estimate.beta[first + index] < 0.0;
     trial.terms.iter().enumerate().any(positive)
-}
-
-/// The growth of ln p that the best of all trials reaches by chance once in a hundred, if nothing is missing.
-fn chance(state: &State, reduced: &Reduced, used: &[usize], causes: &[Cause], banned: &[&str]) -> f64 {
-    let pool = state.pool;
-    let usable = |trial: &&Trial| {
-        let cause = &causes[trial.cause];
-        !banned.contains(&cause.id) && !matches!(cause.form, Form::OverPosition | Form::OverTime)
-    };
-    let trials: Vec<&Trial> = pool.trials.iter().filter(usable).collect();
-    let mut jittered = reduced.matrix.clone();
-    for index in 0..jittered.nrows() {
-        jittered[(index, index)] = jittered[(index, index)] * (1.0 + 1e-9) + 1e-300;
-    }
-    let Some(cholesky) = jittered.cholesky() else { return LEAST_GAIN };
-    let factor = cholesky.l();
-    let mut best: Vec<f64> = Vec::new();
-    for draw in 0..DRAWS {
-        let mut draws = Draws::new(state.case.seed, draw);
-        let white = DVector::from_fn(factor.nrows(), |_, _| draws.normal());
-        let mut problem = reduced.clone();
-        problem.vector = &factor * white;
-        problem.scalar = 0.0;
-        let Some(base) = problem.estimate(used, &pool.sd) else { continue };
-        let gain = trials.iter().filter_map(|trial| {
-            let mut with = used.to_vec();
-            with.extend(&trial.columns);
-            Some(problem.estimate(&with, &pool.sd)?.log_evidence - base.log_evidence)
-        });
-        best.push(gain.fold(f64::NEG_INFINITY, f64::max));
-    }
-    if best.is_empty() { LEAST_GAIN } else { quantile_of_sorted(&sorted(&best), 0.99) }
 }
 
 /// A function over position that these recordings give to slopes and to soft ground alike: where it rises in places above

@@ -73,33 +73,46 @@ pub fn pools(case: &Case, balances: &[Balance], causes: &[Cause]) -> Result<Vec<
             continue;
         }
         for shape in &cause.shapes {
-            let mut found: Vec<Vec<Term>> = balances.iter().map(|_| Vec::new()).collect();
-            for (term, part) in cause.terms.iter().enumerate().filter(|(_, term)| term.linear) {
-                let step = CAUSE_STEP * part.scale;
-                let text = |run: &Drive0| signature(cause, term, step, shape, run);
-                let after = case.said_with(&text, &priors)?;
-                for (balance, found) in balances.iter().zip(&mut found) {
-                    if tried_on(cause, balance.kind, balances) {
-                        let column = difference(case, balance, &after, step);
-                        found.push(Term { column, scale: part.scale, term });
-                    }
-                }
-            }
-            for ((balance, pool), found) in balances.iter().zip(&mut pools).zip(found) {
-                add(balance, pool, number, shape, found);
-            }
+            add_trial(case, balances, &mut pools, number, shape)?;
         }
     }
     Ok(pools)
+}
+
+/// Adds a trial of a cause with these non-linear parameters.
+pub fn add_trial(
+    case: &Case,
+    balances: &[Balance],
+    pools: &mut [Pool],
+    number: usize,
+    shape: &[f64],
+) -> Result<(), DiagnoseError> {
+    let cause = &case.causes[number];
+    let priors = case.study.priors();
+    let mut found: Vec<Vec<Part>> = balances.iter().map(|_| Vec::new()).collect();
+    for (term, part) in cause.terms.iter().enumerate().filter(|(_, term)| term.linear) {
+        let step = CAUSE_STEP * part.scale;
+        let text = |run: &Drive0| signature(cause, term, step, shape, run);
+        let after = case.said_with(&text, &priors)?;
+        for (balance, found) in balances.iter().zip(&mut found) {
+            if tried_on(cause, balance.kind, balances) {
+                let column = difference(case, balance, &after, step);
+                found.push(Part { column, scale: part.scale, term });
+            }
+        }
+    }
+    for ((balance, pool), found) in balances.iter().zip(pools.iter_mut()).zip(found) {
+        add(balance, pool, number, shape, found);
+    }
+    Ok(())
 }
 
 /// What every sensor does a little: half a sampling period of latency, half a per cent of scale. Nobody would call it a
 /// fault, and it must not be taken for physics; so it is free in every balance.
 fn small_faults(case: &Case, balances: &[Balance], pools: &mut [Pool]) -> Result<(), DiagnoseError> {
     const SCALE: f64 = 0.005;
-    let period_s = |drive: &Drive0| {
-        drive.measured.trace.duration_s() / (drive.measured.trace.len().max(2) - 1) as f64
-    };
+    let period_s =
+        |drive: &Drive0| drive.measured.trace.duration_s() / (drive.measured.trace.len().max(2) - 1) as f64;
     let period_s = case.drives.iter().map(period_s).fold(0.0, f64::max);
     if !balances.iter().any(|balance| balance.kind == Kind::Motion) {
         return Ok(());
@@ -122,14 +135,19 @@ fn small_faults(case: &Case, balances: &[Balance], pools: &mut [Pool]) -> Result
 fn tried_on(cause: &Cause, kind: Kind, balances: &[Balance]) -> bool {
     let has = |kind: Kind| balances.iter().any(|balance| balance.kind == kind);
     let power = matches!(kind, Kind::Battery | Kind::Fuel);
-    cause.balances.contains(&kind)
-        && !(power && cause.balances.contains(&Kind::Motion) && has(Kind::Motion))
+    cause.balances.contains(&kind) && !(power && cause.balances.contains(&Kind::Motion) && has(Kind::Motion))
 }
 
 /// A standard deviation for a parameter of which nothing is known.
 fn wide(value: f64, bounds: (f64, f64)) -> f64 {
     let range = bounds.1 - bounds.0;
-    if range.is_finite() { range } else if value != 0.0 { value.abs() } else { 1.0 }
+    if range.is_finite() {
+        range
+    } else if value != 0.0 {
+        value.abs()
+    } else {
+        1.0
+    }
 }
 
 /// The effect that stands for one term of a cause, as it is written for a run.
@@ -180,16 +198,16 @@ fn difference(case: &Case, balance: &Balance, after: &[Said], step: f64) -> Colu
 }
 
 /// The column of one term.
-struct Term {
+struct Part {
     column: Column,
     scale: f64,
     term: usize,
 }
 
-fn add(balance: &Balance, pool: &mut Pool, cause: usize, shape: &[f64], found: Vec<Term>) {
+fn add(balance: &Balance, pool: &mut Pool, cause: usize, shape: &[f64], found: Vec<Part>) {
     let strength = |column: &Column| column.iter().map(DVector::norm_squared).sum::<f64>().sqrt();
     let residual = strength(&balance.residual);
-    let found: Vec<Term> =
+    let found: Vec<Part> =
         found.into_iter().filter(|one| strength(&one.column) * one.scale > WEAKEST * residual).collect();
     if found.is_empty() {
         return;
@@ -204,7 +222,12 @@ fn add(balance: &Balance, pool: &mut Pool, cause: usize, shape: &[f64], found: V
     // A cause of several terms is tried with each of them alone as well: none is claimed that is not needed.
     if columns.len() > 1 {
         for (column, term) in columns.iter().zip(&terms) {
-            pool.trials.push(Trial { cause, shape: shape.to_vec(), columns: vec![*column], terms: vec![*term] });
+            pool.trials.push(Trial {
+                cause,
+                shape: shape.to_vec(),
+                columns: vec![*column],
+                terms: vec![*term],
+            });
         }
     }
     pool.trials.push(Trial { cause, shape: shape.to_vec(), columns, terms });
@@ -223,7 +246,7 @@ fn measured(
     let columns = fault(case, balances, cause.id, step)?;
     for ((balance, pool), column) in balances.iter().zip(pools).zip(columns) {
         if cause.balances.contains(&balance.kind) {
-            add(balance, pool, number, &[], vec![Term { column, scale: term.scale, term: 0 }]);
+            add(balance, pool, number, &[], vec![Part { column, scale: term.scale, term: 0 }]);
         }
     }
     Ok(())
@@ -246,17 +269,20 @@ fn fault(case: &Case, balances: &[Balance], id: &str, step: f64) -> Result<Vec<C
         match kind {
             Kind::Motion => {
                 let time_s = before.measured.trace.time_s();
-                let force = |drive: &Drive0, index: usize| drive.force_n.as_ref().map_or(0.0, |force| force[index]);
+                let force =
+                    |drive: &Drive0, index: usize| drive.force_n.as_ref().map_or(0.0, |force| force[index]);
                 (0..model.resistance_n.len())
                     .map(|index| {
                         let made = before.acceleration_m_s2[index];
                         let faster = match id {
-                            "latency" => interpolate(time_s, &before.acceleration_m_s2, time_s[index] + step) - made,
+                            "latency" => {
+                                interpolate(time_s, &before.acceleration_m_s2, time_s[index] + step) - made
+                            }
                             "speed_scale" => made / (1.0 + step) - made,
                             _ => 0.0,
                         };
-                        force(before, index) - force(after, index)
-                            + remodelled.resistance_n[index] - model.resistance_n[index]
+                        force(before, index) - force(after, index) + remodelled.resistance_n[index]
+                            - model.resistance_n[index]
                             + model.effective_mass_kg[index] * faster
                     })
                     .collect()
@@ -304,7 +330,10 @@ pub fn corrected(drives: &[Drive0], id: &str, value: f64) -> Result<Vec<Drive0>,
                 }),
                 "accelerometer_tilt" => trace.get("specific_force_m_s2").map(|values| {
                     let pitch = drive.motion.slope.iter().map(|slope| 9.81 * value * slope);
-                    ("specific_force_m_s2", values.iter().zip(pitch).map(|(sample, pitch)| sample - pitch).collect())
+                    (
+                        "specific_force_m_s2",
+                        values.iter().zip(pitch).map(|(sample, pitch)| sample - pitch).collect(),
+                    )
                 }),
                 _ => None,
             };

@@ -3,6 +3,7 @@
 use crate::balance::{Balance, Kind};
 use crate::catalogue::Cause;
 use crate::report::{FindingReport, Fit, ParameterReport, Rival, Verdict};
+use std::fmt::Write;
 
 /// A number with as many digits as a person reads.
 fn number(value: f64) -> String {
@@ -29,8 +30,15 @@ fn with_unit(parameter: &ParameterReport) -> String {
 }
 
 /// One sentence for a finding.
-pub fn sentence(cause: &Cause, kind: Kind, parameters: &[ParameterReport], share: f64, rivals: &[Rival]) -> String {
-    let values: Vec<String> = parameters.iter().filter(|one| one.ci95[0] < one.ci95[1]).map(with_unit).collect();
+pub fn sentence(
+    cause: &Cause,
+    kind: Kind,
+    parameters: &[ParameterReport],
+    share: f64,
+    rivals: &[Rival],
+) -> String {
+    let values: Vec<String> =
+        parameters.iter().filter(|one| one.ci95[0] < one.ci95[1]).map(with_unit).collect();
     let values = if values.is_empty() { String::new() } else { format!(": {}", values.join(", ")) };
     let others = if rivals.is_empty() {
         String::new()
@@ -68,7 +76,12 @@ pub fn answer(verdict: Verdict, findings: &[FindingReport], fit: &Fit, balances:
         text.push(' ');
     }
     let proof = |place: &str, runs: &crate::report::FitRuns| {
-        format!("{place} the error of {} falls from {} to {}", fit.signal, number(runs.rmse_before), number(runs.rmse_after))
+        format!(
+            "{place} the error of {} falls from {} to {}",
+            fit.signal,
+            number(runs.rmse_before),
+            number(runs.rmse_after)
+        )
     };
     if let Some(held) = &fit.held_out {
         text.push_str(&proof("On the runs it never saw", held));
@@ -76,13 +89,13 @@ pub fn answer(verdict: Verdict, findings: &[FindingReport], fit: &Fit, balances:
         text.push_str(&proof("On the fitted runs", &fit.fitted));
     }
     if fit.fitted.noise.is_finite() {
-        text.push_str(&format!(" (the sensor: {})", number(fit.fitted.noise)));
+        let _ = write!(text, " (the sensor: {})", number(fit.fitted.noise));
     }
     text.push('.');
     if verdict == Verdict::CannotTell
         && let Some(first) = findings.first()
     {
-        text.push_str(&format!(" To tell: {}.", first.next_experiment));
+        let _ = write!(text, " To tell: {}.", first.next_experiment);
     }
     text
 }

@@ -45,7 +45,7 @@ pub fn diagnose(registry: &Registry, options: &DiagnoseOptions, seed: u64, say: 
     output.traces("effects.parquet", &found.effects)?;
     scenarios(&mut output, registry, &scenario, &found)?;
     recording_text(&mut output, &options.held.recording, &found)?;
-    let page = page::diagnose::page(&scenario.about, &recording, &found)?;
+    let page = page::diagnose::page(&scenario.about, &recording, &found);
     output.page("report.html", &page)?;
     say.result(&told(&found, &output), &found.diagnosis)
 }

@@ -3,13 +3,13 @@
 use headland_diagnose::{Diagnosed, FindingReport, Verdict};
 use headland_recording::Recording;
 use headland_report::build::{self, Parameter};
-use headland_report::{Axis, Cell, Figure, Item, Lines, Plot, Report, ReportError, Section, Series, Table};
+use headland_report::{Axis, Cell, Figure, Item, Lines, Plot, Report, Section, Series, Table};
 
 /// Runs that get plots of their own.
 const IN_DETAIL: usize = 6;
 
 /// Makes the page.
-pub fn page(about: &str, recording: &Recording, found: &Diagnosed) -> Result<Report, ReportError> {
+pub fn page(about: &str, recording: &Recording, found: &Diagnosed) -> Report {
     let diagnosis = &found.diagnosis;
     let mut report = Report::new(about, diagnosis.answer.clone()).with(proof(found));
     for finding in &diagnosis.findings {
@@ -38,7 +38,7 @@ pub fn page(about: &str, recording: &Recording, found: &Diagnosed) -> Result<Rep
     if let Some(section) = super::notices(&recording.notices, &diagnosis.notes) {
         report = report.with(section);
     }
-    Ok(report)
+    report
 }
 
 fn verdict(verdict: Verdict) -> &'static str {
@@ -137,16 +137,15 @@ fn left(found: &Diagnosed) -> Section {
     let mut section = Section::new("What the balances leave over").words(
         "Measured minus modelled: with the free parameters alone, and with everything that was found.",
     );
-    for (kind, run, times, before, after) in found.residuals.iter().take(IN_DETAIL) {
+    for left in found.residuals.iter().take(IN_DETAIL) {
+        let (kind, times) = (left.balance, &left.time_s);
         let series = vec![
-            Series::new("free parameters alone", times.clone(), before.clone()),
-            Series::new("with what was found", times.clone(), after.clone()),
+            Series::new("free parameters alone", times.clone(), left.before.clone()),
+            Series::new("with what was found", times.clone(), left.after.clone()),
         ];
         let axis = Axis::new(format!("left over in the {} balance", kind.name()), kind.unit());
-        section = section.with(Plot::new(
-            format!("{}: {}", super::titled(run), kind.name()),
-            Lines::over_time(axis, series),
-        ));
+        let title = format!("{}: {}", super::titled(&left.run), kind.name());
+        section = section.with(Plot::new(title, Lines::over_time(axis, series)));
     }
     section
 }

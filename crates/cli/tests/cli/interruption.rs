@@ -7,9 +7,8 @@ use std::time::{Duration, Instant};
 /// More runs than are simulated before anybody interrupts.
 fn place() -> Place {
     let place = Place::new();
-    let long: String = (0..600)
-        .map(|run| format!("        (id: \"long_{run}\", with: {{\"cycle.0.until.for_s\": 500}}),\n"))
-        .collect();
+    let one = |run: usize| format!("        (id: \"long_{run}\", with: {{\"cycle.0.until.for_s\": 500}}),\n");
+    let long = (0..600).map(one).collect::<Vec<_>>().concat();
     let runs = format!("    runs: [\n        (id: \"short\", with: {{}}),\n{long}    ],\n    free");
     let text = SCENARIO
         .replace("    free", &runs)

@@ -1,0 +1,185 @@
+//! What is hidden in simulated recordings is found, what is not there is not, and what cannot be known is said.
+//!
+//! The recordings come from the simulator with noise of the sensors added; harder ones, of another plant, are made by
+//! the generator of concealed cases.
+
+use headland_calibrate::statistics::Draws;
+use headland_diagnose::{DiagnoseError, Diagnosed, Options, Progress, Verdict, diagnose};
+use headland_recording::{RecordedRun, Recording};
+use headland_scenario::Scenario;
+use headland_sim::simulate;
+use headland_trace::{Origin, Trace};
+use std::path::{Path, PathBuf};
+
+struct Silent;
+
+impl Progress for Silent {
+    fn step(&self, _: &str) {}
+
+    fn interrupted(&self) -> bool {
+        false
+    }
+}
+
+/// A tractor that drives up, holds, slows down and coasts, to and fro.
+fn scenario(coefficient: f64, effects: &str) -> String {
+    let runs: String = ["0 deg", "180 deg", "0 deg", "180 deg", "0 deg"]
+        .iter()
+        .enumerate()
+        .map(|(run, heading)| {
+            format!("(id: \"r{run}\", with: {{\"ground.terrain.heading_rad\": \"{heading}\"}}), ")
+        })
+        .collect::<Vec<_>>()
+        .concat();
+    format!(
+        r#"(
+    about: "a tractor",
+    vehicle: (
+        mass_kg: 13000, rotating_mass_kg: 800, drag_area_m2: 6.0,
+        driveline: ElectricSingleSpeed(
+            open_circuit_voltage_v: 600, resistance_ohm: 0.05, capacity_a_h: 200, initial_state_of_charge: 0.8,
+            max_torque_n_m: 3000, max_regeneration_torque_n_m: 3000, max_power_w: 300000, gear_ratio: 20,
+            wheel_radius_m: 0.9, drive_efficiency: 0.9, standby_power_w: 500, rotating_mass_kg: 0,
+        ),
+    ),
+    ground: (terrain: Flat(heading_rad: 0.0), soil: LinearSpeedLaw(coefficient: {coefficient:?}, speed_scale_m_s: "100 km/h")),
+    air: (density_kg_m3: 1.2),
+    cycle: [
+        Reach(speed_m_s: 8, acceleration_m_s2: 0.6),
+        Hold(for_s: 6),
+        Reach(speed_m_s: 3, acceleration_m_s2: 0.4),
+        Hold(for_s: 4),
+        Coast(until: SpeedBelow(speed_m_s: 0.5)),
+    ],
+    effects: [{effects}],
+    free: [
+        (name: "ground.soil.coefficient", sd: 0.01, bounds: (0.01, 0.3)),
+        (name: "vehicle.mass_kg", sd: 65, bounds: (10000, 16000)),
+    ],
+    runs: [{runs}],
+    simulation: (fidelity: Longitudinal, step_s: 0.05),
+)"#
+    )
+}
+
+const CHANNELS: [&str; 5] = ["speed_m_s", "position_m", "heading_rad", "tractive_force_n", "coasting"];
+
+/// Simulates, and adds the noise of a speed sensor.
+fn recorded(coefficient: f64, effects: &str) -> Recording {
+    let registry = headland_stock::registry();
+    let text = scenario(coefficient, effects);
+    let scenario = Scenario::of_text("truth.ron", &text, Path::new(""), &registry).unwrap();
+    let runs = scenario.runs.iter().enumerate().map(|(number, spec)| {
+        let scenario = scenario.run(spec, &registry).unwrap();
+        let model = scenario.model(&registry).unwrap();
+        let outcome = simulate(&model, scenario.cycle.as_ref().unwrap()).unwrap();
+        let mut draws = Draws::new(11, number as u64);
+        let mut trace = Trace::new(outcome.trace.time_s().to_vec()).unwrap();
+        for name in CHANNELS {
+            let mut values = outcome.trace.get(name).unwrap().to_vec();
+            if name == "speed_m_s" {
+                values.iter_mut().for_each(|value| *value += 0.02 * draws.normal());
+            }
+            trace.push(name, values, Origin::Measured).unwrap();
+        }
+        RecordedRun {
+            id: spec.id.clone(),
+            trace,
+            path: Some("lane".to_owned()),
+            reversed: false,
+            held_out: number == 4,
+            known: Vec::new(),
+            sensors: Vec::new(),
+        }
+    });
+    Recording {
+        about: "simulated".to_owned(),
+        path: PathBuf::from("recording.ron"),
+        runs: runs.collect(),
+        known: Vec::new(),
+        notices: Vec::new(),
+    }
+}
+
+fn found(recording: &Recording, options: &Options) -> Result<Diagnosed, DiagnoseError> {
+    let registry = headland_stock::registry();
+    let scenario = Scenario::of_text("nominal.ron", &scenario(0.069, ""), Path::new(""), &registry).unwrap();
+    diagnose(&scenario, recording, &registry, options, &Silent)
+}
+
+/// Whether a cause was named, or stated among those that cannot be told apart.
+fn named(found: &Diagnosed, id: &str) -> bool {
+    found
+        .diagnosis
+        .findings
+        .iter()
+        .any(|finding| finding.id == id || finding.indistinguishable_from.iter().any(|rival| rival.id == id))
+}
+
+#[test]
+fn a_nominal_parameter_that_is_a_little_wrong_is_calibrated_and_nothing_is_claimed() {
+    let found = found(&recorded(0.0712, ""), &Options::default()).unwrap();
+    assert_eq!(found.diagnosis.verdict, Verdict::None, "{}", found.diagnosis.answer);
+    let coefficient = &found.diagnosis.calibrated[0];
+    assert!(coefficient.ci95[0] < 0.0712 && 0.0712 < coefficient.ci95[1], "{coefficient:?}");
+    let held = found.diagnosis.fit.held_out.unwrap();
+    assert!(held.rmse_after < 0.3 * held.rmse_before, "{held:?}");
+}
+
+#[test]
+fn a_wind_is_found_with_its_direction_and_shown_on_the_run_that_was_held_out() {
+    let found = found(&recorded(0.07, "wind(speed_m_s: 6.2, from_rad: 0.4)"), &Options::default()).unwrap();
+    assert_eq!(found.diagnosis.findings[0].id, "wind", "{}", found.diagnosis.answer);
+    let speed = &found.diagnosis.findings[0].parameters[0];
+    assert!(speed.ci95[0] < 6.2 && 6.2 < speed.ci95[1], "{speed:?}");
+    let held = found.diagnosis.fit.held_out.as_ref().unwrap();
+    assert!(held.rmse_after < 2.5 * held.noise && held.rmse_before > 4.0 * held.noise, "{held:?}");
+    // What was found runs in the scenario.
+    let registry = headland_stock::registry();
+    let improved = Scenario::of_text("improved.ron", &found.scenarios[0], Path::new(""), &registry).unwrap();
+    assert_eq!(improved.model(&registry).unwrap().effects.len(), 1);
+}
+
+#[test]
+fn a_drag_above_a_speed_is_found_between_the_points_of_the_grid() {
+    let hidden = "speed_threshold(force_n: 830.0, threshold_m_s: 5.37, width_m_s: 0.6)";
+    let found = found(&recorded(0.069, hidden), &Options::default()).unwrap();
+    assert!(named(&found, "speed_threshold"), "{}", found.diagnosis.answer);
+    let threshold =
+        found.diagnosis.findings[0].parameters.iter().find(|one| one.name == "threshold_m_s").unwrap();
+    assert!((threshold.value - 5.37).abs() < 0.4, "{threshold:?}");
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bits_at_any_thread_count() {
+    let recording = recorded(0.07, "neutral_drag(force_n: 700.0)");
+    let text = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let found = pool.install(|| found(&recording, &Options::default())).unwrap();
+        serde_json::to_string(&found.diagnosis).unwrap()
+    };
+    let one = text(1);
+    assert_eq!(one, text(3));
+    assert!(one.contains("\"neutral_drag\""), "{one}");
+}
+
+#[test]
+fn a_cause_that_is_left_out_of_the_library_is_not_claimed() {
+    let recording = recorded(0.07, "wind(speed_m_s: 6.2, from_rad: 0.4)");
+    let without = Options { without: vec!["wind".to_owned()], ..Options::default() };
+    assert!(!named(&found(&recording, &without).unwrap(), "wind"));
+    let misspelt = Options { without: vec!["wnid".to_owned()], ..Options::default() };
+    let error = found(&recording, &misspelt).unwrap_err().to_string();
+    assert!(error.contains("did you mean `wind`?"), "{error}");
+}
+
+#[test]
+fn channels_that_make_no_balance_are_refused_with_what_it_would_take() {
+    let mut recording = recorded(0.07, "");
+    for run in &mut recording.runs {
+        run.trace.remove("tractive_force_n");
+        run.trace.remove("coasting");
+    }
+    let error = found(&recording, &Options::default()).unwrap_err().to_string();
+    assert!(error.contains("tractive_force_n"), "{error}");
+}

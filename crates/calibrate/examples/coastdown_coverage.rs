@@ -143,11 +143,13 @@ fn setting(field: &Field) -> String {
     text
 }
 
+/// Which interval of an estimate is looked at.
+type Pick = fn(&Estimate) -> Option<[f64; 2]>;
+
 fn coverage(truth: f64, answers: &[Answer]) -> String {
     let mut text = String::from(
         "| 95 % interval of the fit | holds the truth in | median half-width |\n|---|---|---|\n",
     );
-    type Pick = fn(&Estimate) -> Option<[f64; 2]>;
     let intervals: [(&str, Pick); 4] = [
         ("reported (`interval_95`)", |estimate| estimate.interval_95),
         ("studentised bootstrap over runs", |estimate| estimate.bootstrap_95),

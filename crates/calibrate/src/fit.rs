@@ -328,7 +328,6 @@ struct Judged {
     scattered: f64,
     size: usize,
     sources: usize,
-    residuals: f64,
 }
 
 impl Judged {
@@ -342,14 +341,12 @@ impl Judged {
         };
         let sources: Vec<Cluster> = sources.iter().map(part).collect();
         let information = sources.iter().fold(DMatrix::zeros(size, size), |sum, one| sum + &one.information);
-        let residuals: usize = here.residuals.iter().map(Vec::len).sum();
         Self {
             pooled: pool(&sources),
             plain: crate::clusters::scaled_inverse(&information),
             scattered: cost_scale(here),
             size,
             sources: here.residuals.len(),
-            residuals: residuals.saturating_sub(size).max(1) as f64,
         }
     }
 
@@ -357,14 +354,14 @@ impl Judged {
     fn interval(&self, place: usize, value: f64) -> (f64, [f64; 2]) {
         let robust = self.pooled.as_ref().map_or(f64::INFINITY, |pooled| pooled.covariance[(place, place)]);
         let plain = self.plain.as_ref().map_or(f64::INFINITY, |plain| plain[(place, place)] * self.scattered);
-        // Fewer clusters than this to a parameter say nothing of their scatter: the weights are believed.
-        let few = self.sources < FEW_CLUSTERS * self.size;
         // Few clusters can agree by chance; what the residuals themselves say is the floor.
-        let variance = if few { plain } else { robust.max(plain) };
+        let variance = robust.max(plain);
+        // Fewer clusters than this to a parameter leave their scatter no degrees of freedom that could be counted.
+        let few = self.sources < FEW_CLUSTERS * self.size;
         let direction = DVector::from_fn(self.size, |row, _| f64::from(row == place));
         let degrees = self.pooled.as_ref().map_or(f64::NAN, |pooled| pooled.degrees_of_freedom(&direction));
         let degrees = match (few, degrees.is_finite()) {
-            (true, _) => self.residuals,
+            (true, _) => (self.sources as f64 - 1.0).max(1.0),
             (false, true) => degrees.max(1.0),
             (false, false) => 1.0,
         };

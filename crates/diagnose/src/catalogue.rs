@@ -543,10 +543,10 @@ fn sensors(all: &mut Vec<Cause>, around: &Around) {
     all.push(artefact(
         "accelerometer_tilt",
         &[Kind::Parity],
-        linear("pitch_rad_s2_m", "rad s²/m", 0.005),
-        "f_measured = f + g φ a",
-        "an accelerometer that pitches with the body",
-        "log the pitch rate",
+        linear("tilt_rad", "rad", 0.015),
+        "f_measured = f + g sin ε",
+        "an accelerometer that is mounted at a tilt",
+        "stand level, and turn around on the spot",
     ));
     all.push(cause(
         "wheel_slip",

@@ -202,13 +202,15 @@ fn reconstruct(
     };
     let values = refined.values();
     let bare = case.said(case.study.scenario(), &values)?;
+    // Forces are told forward, as in every trace: what resists is negative. Powers are what is taken.
+    let way = if unit == "n" { 1.0 } else { -1.0 };
     let negated = |before: &[Said], after: &[Said]| -> Vec<Vec<f64>> {
         case.drives
             .iter()
             .zip(before.iter().zip(after))
             .map(|(drive, (before, after))| {
                 let change = crate::balance::change(balance.kind, drive, before, after);
-                change.iter().map(|value| -value).collect()
+                change.iter().map(|value| way * value).collect()
             })
             .collect()
     };

@@ -367,11 +367,17 @@ fn tried(case: &Case, balances: &[Balance], found: &[Option<Found>]) -> Vec<Trie
     all
 }
 
+/// Whether it is in doubt what a finding is: between faults of one sensor the doubt makes no difference.
+fn doubtful(finding: &FindingReport) -> bool {
+    let fault = |id: &str| ["accelerometer_bias", "accelerometer_tilt"].contains(&id);
+    finding.indistinguishable_from.iter().any(|rival| !(fault(&finding.id) && fault(&rival.id)))
+}
+
 fn verdict(findings: &[FindingReport]) -> Verdict {
     let any = |kind: FindingKind| findings.iter().any(|finding| finding.kind == kind);
     if findings.is_empty() {
         Verdict::None
-    } else if findings.first().is_some_and(|first| !first.indistinguishable_from.is_empty()) {
+    } else if findings.first().is_some_and(doubtful) {
         Verdict::CannotTell
     } else if any(FindingKind::Physics) && any(FindingKind::Artefact) {
         Verdict::Both

@@ -3,6 +3,8 @@
 //! The recordings come from the simulator with noise of the sensors added; harder ones, of another plant, are made by
 //! the generator of concealed cases.
 
+#![allow(clippy::result_large_err, reason = "a test fails once")]
+
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{DiagnoseError, Diagnosed, Options, Progress, Verdict, diagnose};
 use headland_recording::{RecordedRun, Recording};
@@ -78,7 +80,9 @@ fn recorded(coefficient: f64, effects: &str) -> Recording {
         for name in CHANNELS {
             let mut values = outcome.trace.get(name).unwrap().to_vec();
             if name == "speed_m_s" {
-                values.iter_mut().for_each(|value| *value += 0.02 * draws.normal());
+                for value in &mut values {
+                    *value += 0.02 * draws.normal();
+                }
             }
             trace.push(name, values, Origin::Measured).unwrap();
         }

@@ -26,7 +26,7 @@ impl Plugin for Flat {
         validity: "everywhere; leaves out slope, roughness and turns",
         parameters: &[parameter("heading_rad", "rad", "direction of travel, clockwise from north")
             .usually(-std::f64::consts::TAU, std::f64::consts::TAU)
-                .or(0.0)],
+            .or(0.0)],
     };
 }
 

@@ -47,6 +47,9 @@ pub enum StudyError {
     /// [`Study::stop`] said so.
     #[error("interrupted")]
     Interrupted,
+    /// There is nothing left to fit.
+    #[error("every run of the recording is held out; at least one has to be `use: fit`")]
+    AllHeldOut,
     /// A trace does not come together: a bug.
     #[error(transparent)]
     Trace(#[from] TraceError),
@@ -225,7 +228,9 @@ impl<'a> Study<'a> {
             return Err(StudyError::NothingFree { path: self.scenario.document().path().to_owned() });
         }
         let runs: Vec<&Measured> = self.runs.iter().filter(|run| !run.held_out).collect();
-        let runs = if runs.is_empty() { self.runs.iter().collect() } else { runs };
+        if runs.is_empty() {
+            return Err(StudyError::AllHeldOut);
+        }
         let mut weights = self.weights(&runs, &self.priors())?;
         let mut found = fit(&self.parameters, |values| self.residuals(&runs, values, &weights))?;
         for _ in 1..ROUNDS {

@@ -55,9 +55,15 @@ pub fn run(registry: &Registry, arguments: impl IntoIterator<Item = OsString>) -
     }
 }
 
+/// More threads than any machine of today has.
+const MOST_THREADS: usize = 1024;
+
 fn begin(registry: &Registry, arguments: &Arguments, say: Say) -> Result<(), Failure> {
     failure::listen_for_interruption()?;
     if let Some(threads) = arguments.common.threads {
+        if threads.get() > MOST_THREADS {
+            return Err(Failure::Input(format!("--threads is {threads}, expected at most {MOST_THREADS}")));
+        }
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads.get())
             .build_global()

@@ -21,6 +21,16 @@ impl Output {
             Path::to_owned,
         );
         std::fs::create_dir_all(&folder).map_err(|error| Failure::unwritable(&folder, &error))?;
+        let whole = |path: &Path| path.canonicalize().ok();
+        let beside =
+            input.parent().map(|parent| if parent.as_os_str().is_empty() { Path::new(".") } else { parent });
+        if input.is_file() && beside.and_then(whole) == whole(&folder) {
+            return Err(Failure::Input(format!(
+                "--out {} is the folder of {}: what is written there could replace what was read; name another",
+                folder.display(),
+                input.display()
+            )));
+        }
         Ok(Self { folder, written: Vec::new() })
     }
 

@@ -225,7 +225,8 @@ fn say(model: &Model, drive: &Drive0, trace: &Trace, kinds: &[Kind]) -> Result<S
     let how = Replay { also: inputs(trace, &how), ..how };
     let failed = |error| DiagnoseError::Replay { run: drive.measured.id.clone(), error };
     let modelled = replay(model, trace, &how).map_err(failed)?.trace;
-    let get = |name: &str| modelled.get(name).map(<[f64]>::to_vec).unwrap_or_default();
+    let unknown = || vec![f64::NAN; modelled.len()];
+    let get = |name: &str| modelled.get(name).map_or_else(unknown, <[f64]>::to_vec);
     let (tractive, acceleration, mass) =
         (get("tractive_force_n"), get("acceleration_m_s2"), get("effective_mass_kg"));
     let brake = modelled.get("brake_force_n").map_or_else(|| vec![0.0; tractive.len()], <[f64]>::to_vec);
@@ -317,10 +318,13 @@ fn period_s(drive: &Drive0) -> f64 {
 }
 
 /// Builds a balance.
-pub fn balance(kind: Kind, drives: &[Drive0], said: &[Said], block_s: f64) -> Balance {
+pub fn balance(kind: Kind, drives: &[Drive0], said: &[Said], block_s: f64, allowed: &[Vec<bool>]) -> Balance {
     let mut all = Vec::new();
     for (index, (drive, said)) in drives.iter().zip(said).enumerate() {
-        let usable = usable(kind, drive, said);
+        let mut usable = usable(kind, drive, said);
+        for (usable, allowed) in usable.iter_mut().zip(&allowed[index]) {
+            *usable &= allowed;
+        }
         all.extend(chunks(index, drive.measured.trace.time_s(), &usable, block_s));
     }
     let shape =

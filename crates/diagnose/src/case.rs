@@ -62,6 +62,9 @@ impl<'a> Case<'a> {
         let mut drives = drives(&study, recording, &model);
         locate(&mut drives, scenario);
         let marked: Vec<bool> = recording.runs.iter().map(|run| run.held_out).collect();
+        if marked.iter().all(|held| *held) {
+            return Err(headland_calibrate::study::StudyError::AllHeldOut.into());
+        }
         let (fit, chosen) = split(&marked);
         let mut case = Self {
             study,
@@ -133,13 +136,19 @@ impl<'a> Case<'a> {
     }
 
     /// The balances, from the ground up.
-    pub fn balances(&self) -> Vec<Balance> {
+    pub fn balances(&self, usable: &[Vec<bool>]) -> Vec<Balance> {
         let block_s = block_s(&self.drives);
         self.kinds
             .iter()
-            .map(|kind| balance(*kind, &self.drives, &self.nominal, block_s))
+            .map(|kind| balance(*kind, &self.drives, &self.nominal, block_s, usable))
             .filter(|balance| balance.chunks.iter().any(|chunk| self.fit[chunk.run]))
             .collect()
+    }
+
+    /// Whether the user lets a cause be claimed.
+    pub fn wanted(&self, id: &str) -> bool {
+        let Options { without, only, .. } = self.options;
+        !without.iter().any(|one| one == id) && (only.is_empty() || only.iter().any(|one| one == id))
     }
 
     /// Causes that the user does not want claimed.
@@ -276,8 +285,7 @@ fn split(marked: &[bool]) -> (Vec<bool>, bool) {
     /// Fewer runs are all needed.
     const FEWEST: usize = 3;
     if marked.iter().any(|held| *held) {
-        let all = marked.iter().all(|held| *held);
-        return (marked.iter().map(|held| all || !held).collect(), false);
+        return (marked.iter().map(|held| !held).collect(), false);
     }
     if marked.len() < FEWEST {
         return (vec![true; marked.len()], true);

@@ -173,6 +173,32 @@ impl Cause {
     }
 }
 
+/// Begin and end of a spell that is the same in every run, in eighths of the longest.
+fn windows(duration_s: f64) -> Vec<Vec<f64>> {
+    let edge = |eighth: u8| duration_s * f64::from(eighth) / 8.0;
+    (1..7).flat_map(|from| (from + 1..=8).map(move |to| vec![edge(from), edge(to)])).collect()
+}
+
+/// A cause that works in spells of single runs.
+pub fn spell(id: &str) -> Cause {
+    let (id, words, equation, experiment) = match id {
+        "braking" => (
+            "braking",
+            "service brakes that were not recorded",
+            "F = F_b while braking",
+            "log the brake switch",
+        ),
+        _ => (
+            "drawbar_load",
+            "a pull at the hitch that was not recorded",
+            "F = F_h while it pulls",
+            "repeat without implement or trailer, or log the drawbar force",
+        ),
+    };
+    let terms = vec![positive("force_n", "N", 1000.0)];
+    cause(id, &[Kind::Motion], terms, equation, &["time_s"], words, experiment).over(Form::OverTime)
+}
+
 /// The causes that the recording could show at all.
 #[allow(clippy::too_many_lines, reason = "a table")]
 pub fn causes(around: &Around) -> Vec<Cause> {
@@ -326,6 +352,16 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             "an implement or trailer that was not recorded",
             "repeat without it, or log the drawbar force",
         ),
+        cause(
+            "drawbar_load",
+            MOTION,
+            vec![positive("force_n", "N", 0.02 * weight), shape("from_s", "s"), shape("to_s", "s")],
+            "F = F₀ between two times",
+            &["time_s"],
+            "an implement that is down for a while",
+            "repeat without it, or log the drawbar force",
+        )
+        .shaped(windows(around.duration_s)),
         cause(
             "speed_threshold",
             MOTION,

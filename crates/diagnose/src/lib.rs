@@ -12,6 +12,8 @@ mod balance;
 mod case;
 mod catalogue;
 mod error;
+mod events;
+mod faults;
 mod gram;
 mod locate;
 mod noise;
@@ -50,7 +52,9 @@ pub fn diagnose(
     progress: &dyn Progress,
 ) -> Result<Diagnosed, DiagnoseError> {
     let case = Case::new(scenario, recording, registry, options, progress)?;
-    let balances = case.balances();
+    let (faults, sound) = faults::faults(&case.drives);
+    let faults: Vec<faults::Fault> = faults.into_iter().filter(|fault| case.wanted(fault.id)).collect();
+    let mut balances = case.balances(&sound);
     if balances.is_empty() {
         let channels = case.drives.iter().flat_map(|drive| drive.measured.trace.channels());
         let mut channels: Vec<String> = channels.map(|channel| channel.name.clone()).collect();
@@ -63,9 +67,11 @@ pub fn diagnose(
     if sharpen(&case, &balances, &mut pools, &found)? {
         found = search_all(&case, &balances, &pools)?;
     }
-    let refined = refine::refine(&case, &balances, &pools, &found)?;
+    let events = spells(&case, &mut balances, &mut pools, &mut found, &sound)?;
+    let mut refined = refine::refine(&case, &balances, &pools, &found)?;
+    refine::spells(&case, &balances, &events, &mut refined);
     let proof = prove::prove(&case, &balances, &refined)?;
-    report::report(&case, &balances, &pools, &found, &refined, &proof)
+    report::report(&case, &balances, &found, &refined, &proof, &faults)
 }
 
 fn search_all(
@@ -84,32 +90,76 @@ fn search_all(
     Ok(found)
 }
 
-/// Adds trials at the fitted values of non-linear parameters: what lies between the points of a grid must not be left
-/// for another cause to explain. Whether there was anything to add.
+/// Adds trials at the fitted values of non-linear parameters, of the best causes that have some: what lies between the
+/// points of a grid must not be left for another cause to explain. Whether there was anything to add.
 fn sharpen(
     case: &Case,
     balances: &[balance::Balance],
     pools: &mut [trial::Pool],
     found: &[Option<search::Found>],
 ) -> Result<bool, DiagnoseError> {
+    /// So many causes of a balance get the chance.
+    const MOST: usize = 3;
+    /// Those that bring at least this share of what the best one brings.
+    const CLOSE: f64 = 0.5;
     let mut added = false;
     for (index, found) in found.iter().enumerate() {
         let Some(found) = found else { continue };
-        let Some(first) = found.accepted.first().filter(|one| !one.trial.shape.is_empty()) else { continue };
-        let fitted = refine::shape(case, &balances[index], found, first)?;
-        if fitted != first.trial.shape {
-            trial::add_trial(case, balances, pools, first.trial.cause, &fitted)?;
-            // A rival of the same kind gets the same chance.
-            let names = |cause: usize| -> Vec<&str> {
-                case.causes[cause].terms.iter().filter(|term| !term.linear).map(|term| term.name).collect()
-            };
-            for (rival, _, _) in &first.rivals {
-                if names(*rival) == names(first.trial.cause) {
-                    trial::add_trial(case, balances, pools, *rival, &fitted)?;
-                }
+        let (Some(first), Some(round)) = (found.accepted.first(), found.tried.first()) else { continue };
+        let mut chosen: Vec<&str> = Vec::new();
+        for (cause, shape, gain) in &round.causes {
+            let id = case.causes[*cause].id;
+            if shape.is_empty() || *gain < CLOSE * first.gain || chosen.len() == MOST || chosen.contains(&id)
+            {
+                continue;
             }
-            added = true;
+            let trial =
+                pools[index].trials.iter().find(|trial| trial.cause == *cause && trial.shape == *shape);
+            let Some(trial) = trial.cloned() else { continue };
+            chosen.push(id);
+            let tried = search::Accepted { trial, function: None, rivals: Vec::new(), ..first.clone() };
+            let fitted = refine::shape(case, &balances[index], found, &tried)?;
+            if fitted != *shape {
+                trial::add_trial(case, balances, pools, *cause, &fitted)?;
+                added = true;
+            }
         }
     }
     Ok(added)
+}
+
+/// Spells in single runs are set aside, and what every run has in common is looked for once more without them.
+fn spells(
+    case: &Case,
+    balances: &mut Vec<balance::Balance>,
+    pools: &mut Vec<trial::Pool>,
+    found: &mut Vec<Option<search::Found>>,
+    sound: &[Vec<bool>],
+) -> Result<Vec<events::Event>, DiagnoseError> {
+    // A function of time can imitate spells; it is looked at without.
+    let mut banned = case.banned();
+    banned.push("payload_change");
+    let mut events: Vec<events::Event> = Vec::new();
+    for ((balance, pool), found) in balances.iter().zip(pools.iter()).zip(found.iter()) {
+        let Some(found) = found else { continue };
+        let timed = found.accepted.iter().any(|one| case.causes[one.trial.cause].id == "payload_change");
+        let plain = if timed { search::search(case, balance, pool, &case.causes, &banned) } else { None };
+        events.extend(events::events(case, balance, plain.as_ref().unwrap_or(found)));
+    }
+    if events.is_empty() || !case.wanted(events::name(&case.drives, &events)) {
+        return Ok(Vec::new());
+    }
+    let mut usable = events::outside(&case.drives, &events, balance::block_s(&case.drives));
+    for (usable, sound) in usable.iter_mut().zip(sound) {
+        for (usable, sound) in usable.iter_mut().zip(sound) {
+            *usable &= sound;
+        }
+    }
+    *balances = case.balances(&usable);
+    *pools = trial::pools(case, balances, &case.causes)?;
+    *found = search_all(case, balances, pools)?;
+    if sharpen(case, balances, pools, found)? {
+        *found = search_all(case, balances, pools)?;
+    }
+    Ok(events)
 }

@@ -2,6 +2,7 @@
 
 use crate::balance::{Balance, Drive0, Kind, Said, forward};
 use crate::catalogue::{Cause, Class, Form};
+use crate::events::Event;
 use crate::refine::{Cured, Refined, said_with_all};
 use crate::trial::{corrected, for_run};
 use crate::{Case, DiagnoseError};
@@ -102,7 +103,7 @@ pub fn prove(case: &Case, balances: &[Balance], refined: &Refined) -> Result<Pro
 }
 
 fn by_path(refined: &Refined) -> bool {
-    refined.causes.iter().any(|cured| cured.function.is_some())
+    refined.causes.iter().any(|cured| cured.function.is_some() || !cured.events.is_empty())
 }
 
 /// The signal by which before and after are told.
@@ -142,6 +143,10 @@ fn text(case: &Case, cured: &Cured, run: usize) -> Option<String> {
         return None;
     }
     let drive = &case.drives[run];
+    if !cured.events.is_empty() {
+        let own: Vec<&Event> = cured.events.iter().filter(|event| event.run == run).collect();
+        return (!own.is_empty()).then(|| spelt(cured.cause.id, &own));
+    }
     let Some(function) = &cured.function else {
         let values: Vec<f64> = cured.values.iter().map(|(value, _)| *value).collect();
         return Some(for_run(&cured.cause.written(&values), &cured.cause, drive));
@@ -186,6 +191,28 @@ fn text(case: &Case, cured: &Cured, run: usize) -> Option<String> {
     })
 }
 
+/// Spells as a scenario writes them.
+fn spelt(id: &str, events: &[&Event]) -> String {
+    if id != "braking" {
+        let one = |event: &&Event| {
+            format!(
+                "drawbar_load(force_n: {:?}, from_s: {:?}, to_s: {:?})",
+                event.force_n, event.from_s, event.to_s
+            )
+        };
+        return events.iter().map(one).collect::<Vec<_>>().join(", ");
+    }
+    let (mut times, mut forces) = (Vec::new(), Vec::new());
+    for event in events {
+        times.extend([format!("{:?}", event.from_s), format!("{:?}", event.to_s)]);
+        forces.push(format!("{:?}", event.force_n));
+        forces.push("0.0".to_owned());
+    }
+    // The times are edges: the last one ends the last, empty spell.
+    times.push(format!("{:?}", events.last().map_or(0.0, |event| event.to_s) + 1.0));
+    format!("braking(times_s: [{}], forces_n: [{}])", times.join(", "), forces.join(", "))
+}
+
 /// What an effect does along every run.
 fn reconstruct(
     case: &Case,
@@ -214,7 +241,19 @@ fn reconstruct(
             })
             .collect()
     };
-    let runs = if cured.cause.class == Class::Artefact {
+    let runs = if !cured.events.is_empty() {
+        let of_run = |(run, drive): (usize, &Drive0)| -> Vec<f64> {
+            let own: Vec<&Event> = cured.events.iter().filter(|event| event.run == run).collect();
+            let at = |time: &f64| {
+                -own.iter()
+                    .filter(|event| (event.from_s..event.to_s).contains(time))
+                    .map(|event| event.force_n)
+                    .sum::<f64>()
+            };
+            drive.measured.trace.time_s().iter().map(at).collect()
+        };
+        case.drives.iter().enumerate().map(of_run).collect()
+    } else if cured.cause.class == Class::Artefact {
         let value = cured.values.first().map_or(0.0, |(value, _)| *value);
         let fixed = corrected(&case.drives, cured.cause.id, value)?;
         let after = case.said_of(&fixed, case.study.scenario(), &values)?;

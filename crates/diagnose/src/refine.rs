@@ -1,7 +1,8 @@
 //! The accepted causes fitted once more without linearising, together with the free parameters.
 
 use crate::balance::{Balance, Drive0, Kind};
-use crate::catalogue::{Cause, Class, Form};
+use crate::catalogue::{Cause, Class, Form, spell};
+use crate::events::{Event, LEAST_GAIN, name};
 use crate::profile::Function;
 use crate::search::{Accepted, Found};
 use crate::trial::{Pool, corrected, for_run};
@@ -23,6 +24,8 @@ pub struct Cured {
     pub values: Vec<(f64, [f64; 2])>,
     /// The function, where it is one.
     pub function: Option<Function>,
+    /// Spells in single runs, where it is some.
+    pub events: Vec<Event>,
 }
 
 /// Everything that was found, with values.
@@ -120,8 +123,38 @@ fn linear(
             accepted: accepted.clone(),
             values,
             function: accepted.function.clone(),
+            events: Vec::new(),
         });
     }
+}
+
+/// Adds spells in single runs as one cause.
+pub fn spells(case: &Case, balances: &[Balance], events: &[Event], refined: &mut Refined) {
+    let motion = balances.iter().position(|balance| balance.kind == Kind::Motion);
+    let (Some(balance), Some(strongest)) = (motion, events.iter().map(|event| event.gain).reduce(f64::max))
+    else {
+        return;
+    };
+    let cause = spell(name(&case.drives, events));
+    let longest = |event: &Event| event.to_s - event.from_s;
+    let whole: f64 = events.iter().map(longest).sum();
+    let mean = events.iter().map(|event| event.force_n * longest(event)).sum::<f64>() / whole.max(1e-9);
+    let sd = events.iter().map(|event| event.sd_n).fold(0.0, f64::max);
+    let trial = crate::trial::Trial { cause: 0, shape: Vec::new(), columns: Vec::new(), terms: Vec::new() };
+    refined.causes.push(Cured {
+        cause,
+        balance,
+        accepted: Accepted {
+            trial,
+            gain: strongest,
+            by_chance: LEAST_GAIN,
+            rivals: Vec::new(),
+            function: None,
+        },
+        values: vec![(mean, [mean - 1.96 * sd, mean + 1.96 * sd])],
+        function: None,
+        events: events.to_vec(),
+    });
 }
 
 /// The non-linear parameters of one cause, fitted without any other.
@@ -255,6 +288,7 @@ fn nonlinear(
             accepted: (*accepted).clone(),
             values: values.clone(),
             function: None,
+            events: Vec::new(),
         })
         .collect();
     for ((place, index), estimate) in slots.iter().zip(&fitted.estimates[count..]) {

@@ -2,11 +2,11 @@
 
 use crate::balance::{Balance, Kind};
 use crate::catalogue::{Cause, Class, Form};
+use crate::faults::Fault;
 use crate::locate::stretches;
 use crate::prove::Proof;
 use crate::refine::{Cured, Refined};
 use crate::search::Found;
-use crate::trial::Pool;
 use crate::{Case, DiagnoseError, words};
 use headland_trace::{Origin, Run, Trace};
 use serde::Serialize;
@@ -223,13 +223,17 @@ pub struct LeftOver {
 pub fn report(
     case: &Case,
     balances: &[Balance],
-    pools: &[Pool],
     found: &[Option<Found>],
     refined: &Refined,
     proof: &Proof,
+    faults: &[Fault],
 ) -> Result<Diagnosed, DiagnoseError> {
-    let _ = pools;
-    let findings = findings(case, balances, found, refined, proof);
+    let mut findings = findings(case, balances, found, refined, proof);
+    findings.extend(faults.iter().map(|fault| faulty(fault, balances)));
+    let proven = proven(proof);
+    if !proven {
+        findings.retain(|finding| finding.share_of_mismatch == 0.0 && finding.kind == FindingKind::Artefact);
+    }
     let verdict = verdict(&findings);
     let ids = |wanted: bool| -> Vec<String> {
         let chosen = case.drives.iter().zip(&case.fit).filter(|(_, fit)| **fit == wanted);
@@ -267,6 +271,13 @@ pub fn report(
         })
         .collect();
     let mut notes = case.study.notes.clone();
+    if !proven && !refined.causes.is_empty() {
+        let ids: Vec<&str> = refined.causes.iter().map(|cured| cured.cause.id).collect();
+        notes.push(format!(
+            "{} would explain the fitted runs, but not those that were held out; so nothing of it is claimed.",
+            ids.join(", ")
+        ));
+    }
     if case.chosen && ids(false).is_empty() {
         notes.push(
             "There are too few runs to hold one out, so nothing is proven on runs that were not fitted."
@@ -348,6 +359,29 @@ fn findings(
     findings
 }
 
+/// A fault that a channel shows by itself.
+fn faulty(fault: &Fault, balances: &[Balance]) -> FindingReport {
+    FindingReport {
+        kind: FindingKind::Artefact,
+        id: fault.id.to_owned(),
+        balance: balances.first().map_or(Kind::Motion, |balance| balance.kind),
+        sentence: words::fault(fault),
+        equation: String::new(),
+        depends_on: vec![fault.channel.clone()],
+        stretches: fault.stretches.clone(),
+        parameters: vec![ParameterReport {
+            name: "size".to_owned(),
+            value: fault.size,
+            ci95: [fault.size, fault.size],
+            unit: fault.unit.clone(),
+        }],
+        share_of_mismatch: 0.0,
+        evidence: [0.0, 0.0],
+        indistinguishable_from: Vec::new(),
+        next_experiment: format!("look at the sensor and the logger of `{}`", fault.channel),
+    }
+}
+
 fn tried(case: &Case, balances: &[Balance], found: &[Option<Found>]) -> Vec<Tried> {
     let mut all = Vec::new();
     for (balance, found) in balances.iter().zip(found) {
@@ -365,6 +399,14 @@ fn tried(case: &Case, balances: &[Balance], found: &[Option<Found>]) -> Vec<Trie
         }
     }
     all
+}
+
+/// Whether what was found makes the runs better that it never saw; where there are none, those that it saw.
+fn proven(proof: &Proof) -> bool {
+    /// At least so much has the error to fall.
+    const FALL: f64 = 0.95;
+    let errors = proof.held_out.as_ref().unwrap_or(&proof.fitted);
+    !(errors.before.is_finite() && errors.after.is_finite()) || errors.after < FALL * errors.before
 }
 
 /// Whether it is in doubt what a finding is: between faults of one sensor the doubt makes no difference.
@@ -411,10 +453,16 @@ fn share(
     let noise = found.noise.1.sensor;
     // Against the nominal model: what the free parameters take is part of the mismatch too.
     let before = (mean_square(&balance.residual) - noise).max(1e-300);
-    let whole = (1.0 - (mean_square(&found.left) - noise).max(0.0) / before).clamp(0.0, 1.0);
+    let left = (mean_square(&found.left) - noise).max(0.0);
+    // Over samples: rows in which a spell works are set aside.
     let size = |index: usize| {
-        let column = crate::balance::column(&balance.chunks, &proof.effects[index].runs);
-        mean_square(&column)
+        let runs = proof.effects[index].runs.iter().zip(&case.fit).filter(|(_, fit)| **fit);
+        let squares: Vec<f64> = runs
+            .flat_map(|(run, _)| run)
+            .map(|value| value * value)
+            .filter(|value| value.is_finite())
+            .collect();
+        squares.iter().sum::<f64>() / squares.len().max(1) as f64
     };
     let same: Vec<usize> =
         (0..refined.causes.len()).filter(|index| refined.causes[*index].balance == cured.balance).collect();
@@ -423,7 +471,9 @@ fn share(
         .iter()
         .find(|index| refined.causes[**index].cause.id == cured.cause.id)
         .map_or(0.0, |index| size(*index));
-    if all > 0.0 { whole * own / all } else { 0.0 }
+    // What the free parameters take is part of the mismatch with the nominal model too.
+    let calibrated = (before - left - all).max(0.0);
+    if all > 0.0 { own / (all + left + calibrated) } else { 0.0 }
 }
 
 fn parameters(cured: &Cured, case: &Case) -> Vec<ParameterReport> {

@@ -146,6 +146,14 @@ pub fn search(
     })
 }
 
+/// What it costs to have had the choice among so many shapes: ln of their number. A spell at the same time in every run,
+/// with nothing that tells why, is less likely from the start.
+fn choice(cause: &Cause) -> f64 {
+    const BY_THE_CLOCK: f64 = 3.0;
+    let clock = cause.terms.iter().any(|term| term.name == "from_s");
+    (cause.shapes.len().max(1) as f64).ln() + if clock { BY_THE_CLOCK } else { 0.0 }
+}
+
 /// Whether a cause is a function of position or time.
 fn over_something(cause: &Cause) -> bool {
     matches!(cause.form, Form::OverPosition | Form::OverTime)
@@ -218,7 +226,7 @@ impl State<'_> {
             with.extend(&trial.columns);
             let Some(estimate) = stand.here.reduced.estimate(&with, &self.pool.sd) else { continue };
             if !impossible(cause, trial, &estimate, stand.used.len()) {
-                let gain = estimate.log_evidence - base;
+                let gain = estimate.log_evidence - base - choice(cause);
                 contest.push(Contest { trial: trial.clone(), gain, spread: None });
             }
         }
@@ -247,7 +255,8 @@ impl State<'_> {
         let own = |one: Contest| {
             let (used, function) = stand.with(&one);
             let (_, settled) = self.settle_from(&used, function, &stand.noise)?;
-            Some(Contest { gain: settled.estimate.log_evidence - base, ..one })
+            let gain = settled.estimate.log_evidence - base - choice(&self.causes()[one.trial.cause]);
+            Some(Contest { gain, ..one })
         };
         let mut judged: Vec<Contest> = contest.into_par_iter().filter_map(own).collect();
         // Of two that explain as much, a cause in the world is named before a fault of a sensor.

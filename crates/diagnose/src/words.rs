@@ -76,8 +76,15 @@ pub fn answer(verdict: Verdict, findings: &[FindingReport], fit: &Fit, balances:
         text.push(' ');
     }
     let proof = |place: &str, runs: &crate::report::FitRuns| {
+        let moves = if runs.rmse_after < 0.98 * runs.rmse_before {
+            "falls"
+        } else if runs.rmse_after > 1.02 * runs.rmse_before {
+            "rises"
+        } else {
+            "stays,"
+        };
         format!(
-            "{place} the error of {} falls from {} to {}",
+            "{place} the error of {} {moves} from {} to {}",
             fit.signal,
             number(runs.rmse_before),
             number(runs.rmse_after)
@@ -98,4 +105,19 @@ pub fn answer(verdict: Verdict, findings: &[FindingReport], fit: &Fit, balances:
         let _ = write!(text, " To tell: {}.", first.next_experiment);
     }
     text
+}
+
+/// One sentence for a fault that a channel shows by itself.
+pub fn fault(fault: &crate::faults::Fault) -> String {
+    let size = number(fault.size);
+    match fault.id {
+        "stuck_channel" => format!(
+            "`{}` sticks for {size} s in all while the vehicle moves; those samples were left out.",
+            fault.channel
+        ),
+        "quantisation" => {
+            format!("`{}` comes in steps of {size} {}, coarser than its noise.", fault.channel, fault.unit)
+        }
+        _ => format!("{:.1} % of the recorded time holds no samples.", 100.0 * fault.size),
+    }
 }

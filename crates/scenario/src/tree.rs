@@ -107,7 +107,7 @@ impl Node {
 /// # Errors
 /// [`Broken`] where brackets, commas or quotes do not match.
 pub fn parse(text: &str) -> Result<Node, Broken> {
-    let mut reader = Reader { text, at: 0 };
+    let mut reader = Reader { text, at: 0, depth: 0 };
     reader.skip_blank()?;
     while reader.rest().starts_with("#!") {
         let Some(end) = reader.rest().find(']') else { return Err(reader.broken("`]` to end `#![`")) };
@@ -122,9 +122,13 @@ pub fn parse(text: &str) -> Result<Node, Broken> {
     Ok(node)
 }
 
+/// No scenario nests more deeply, and the stack has an end.
+const DEEPEST: usize = 100;
+
 struct Reader<'a> {
     text: &'a str,
     at: usize,
+    depth: usize,
 }
 
 impl<'a> Reader<'a> {
@@ -179,6 +183,16 @@ impl<'a> Reader<'a> {
     }
 
     fn value(&mut self) -> Result<Node, Broken> {
+        if self.depth >= DEEPEST {
+            return Err(self.broken("values nested less deeply"));
+        }
+        self.depth += 1;
+        let node = self.value_inside();
+        self.depth -= 1;
+        node
+    }
+
+    fn value_inside(&mut self) -> Result<Node, Broken> {
         let start = self.at;
         let shape = match self.peek() {
             Some('(') => self.parenthesis(None)?,

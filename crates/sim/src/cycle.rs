@@ -76,6 +76,9 @@ pub struct Cycle {
 /// Below this acceleration [m/s²] a vehicle that wants more has reached the end of its force.
 const NO_MORE_ACCELERATION_M_S2: f64 = 1e-5;
 
+/// A run of more steps would fill the memory: 20 million take some gigabytes.
+const MOST_STEPS: usize = 20_000_000;
+
 /// Drives the model through the cycle.
 ///
 /// # Errors
@@ -209,6 +212,9 @@ impl<'a> Running<'a> {
             }
             if let Some(reason) = hopeless(machine, &instant) {
                 return Err(reason);
+            }
+            if machine.steps >= MOST_STEPS {
+                return Err(format!("it takes more than {MOST_STEPS} steps of {} s", self.cycle.step_s));
             }
             if machine.time_s >= self.cycle.longest_s {
                 return Err(format!("the phase has not ended after {} s", self.cycle.longest_s));

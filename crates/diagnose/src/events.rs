@@ -1,0 +1,140 @@
+//! Spells in single runs that no cause of every run explains: a brake that was not recorded, an implement let down.
+//!
+//! A matched filter: for every stretch of rows the constant force that would explain what is left, and by how much
+//! ln p would grow, (xᵀΣ⁻¹r)² / (2 xᵀΣ⁻¹x). The best stretch is taken out, and the search goes on beside it.
+//! Source: Kay, *Fundamentals of Statistical Signal Processing: Detection Theory* (1998), chapter 4.
+
+use crate::Case;
+use crate::balance::{Balance, Drive0, Kind};
+use crate::search::Found;
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+/// A spell.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// Index of the run.
+    pub run: usize,
+    /// Begin [s].
+    pub from_s: f64,
+    /// End [s].
+    pub to_s: f64,
+    /// Force against the motion [N].
+    pub force_n: f64,
+    /// Its standard deviation [N].
+    pub sd_n: f64,
+    /// Growth of ln p.
+    pub gain: f64,
+}
+
+/// Growth of ln p from which on a spell is no accident among some ten thousand stretches.
+pub const LEAST_GAIN: f64 = 25.0;
+/// Lengths of stretches that are looked at, in rows.
+const LENGTHS: [usize; 10] = [2, 3, 5, 8, 13, 21, 34, 55, 89, 144];
+/// At most so many spells in a chunk.
+const MOST: usize = 6;
+/// A braked vehicle slows down at least like this [m/s²].
+const BRAKED_M_S2: f64 = -0.25;
+
+/// The spells of the motion balance, where there are some.
+pub fn events(case: &Case, balance: &Balance, found: &Found) -> Vec<Event> {
+    if balance.kind != Kind::Motion {
+        return Vec::new();
+    }
+    let Some(whitener) = found.noise.1.whitener(&balance.chunks) else { return Vec::new() };
+    let of_chunk = |index: usize| -> Vec<Event> {
+        let chunk = &balance.chunks[index];
+        let drive = &case.drives[chunk.run];
+        let mut left = found.left[index].clone();
+        let mut all = Vec::new();
+        for _ in 0..MOST {
+            let white = whitener.whiten(chunk, &left);
+            let mut best: Option<(usize, usize, f64, f64, f64)> = None;
+            for length in LENGTHS.into_iter().filter(|length| 2 * length <= chunk.rows.len()) {
+                for from in 0..=chunk.rows.len() - length {
+                    let box_n = DVector::from_fn(chunk.rows.len(), |row, _| {
+                        f64::from((from..from + length).contains(&row))
+                    });
+                    let x = whitener.whiten(chunk, &box_n);
+                    let (product, square) = (x.dot(&white), x.norm_squared());
+                    let gain = 0.5 * product * product / square;
+                    if product > 0.0 && best.is_none_or(|(.., known)| gain > known) {
+                        best = Some((from, length, product / square, square.sqrt().recip(), gain));
+                    }
+                }
+            }
+            let Some((from, length, force_n, sd_n, gain)) = best.filter(|(.., gain)| *gain > LEAST_GAIN)
+            else {
+                break;
+            };
+            for row in from..from + length {
+                left[row] -= force_n;
+            }
+            let time_s = drive.measured.trace.time_s();
+            let edge = |row: usize, side: usize| time_s[chunk.rows[row].samples[side].min(time_s.len() - 1)];
+            all.push(Event {
+                run: chunk.run,
+                from_s: edge(from, 1),
+                to_s: edge(from + length - 1, 1).max(chunk.rows[from + length - 1].time_s),
+                force_n,
+                sd_n,
+                gain,
+            });
+        }
+        all
+    };
+    let mut all: Vec<Event> = (0..balance.chunks.len()).into_par_iter().flat_map_iter(of_chunk).collect();
+    all.sort_by(|one, other| one.run.cmp(&other.run).then(one.from_s.total_cmp(&other.from_s)));
+    joined(all)
+}
+
+/// Spells that overlap or touch are one, with the force of their means.
+fn joined(all: Vec<Event>) -> Vec<Event> {
+    let mut joined: Vec<Event> = Vec::new();
+    for event in all {
+        match joined.last_mut() {
+            Some(last) if last.run == event.run && event.from_s <= last.to_s + 0.3 => {
+                let (one, other) = (last.to_s - last.from_s, event.to_s - event.from_s);
+                last.force_n = (last.force_n * one + event.force_n * other) / (one + other).max(1e-9);
+                last.to_s = last.to_s.max(event.to_s);
+                last.gain += event.gain;
+                last.sd_n = last.sd_n.max(event.sd_n);
+            }
+            _ => joined.push(event),
+        }
+    }
+    joined
+}
+
+/// Samples that lie in no spell, run by run; a spell's edges go with it.
+pub fn outside(drives: &[Drive0], events: &[Event], margin_s: f64) -> Vec<Vec<bool>> {
+    drives
+        .iter()
+        .enumerate()
+        .map(|(run, drive)| {
+            let own: Vec<&Event> = events.iter().filter(|event| event.run == run).collect();
+            let inside = |time: f64| {
+                own.iter().any(|event| (event.from_s - margin_s..=event.to_s + margin_s).contains(&time))
+            };
+            drive.measured.trace.time_s().iter().map(|time| !inside(*time)).collect()
+        })
+        .collect()
+}
+
+/// What spells are called: brakes where the vehicle slows down without being driven, a pull at the hitch otherwise.
+pub fn name(drives: &[Drive0], events: &[Event]) -> &'static str {
+    let braked = |event: &&Event| {
+        let drive = &drives[event.run];
+        let time_s = drive.measured.trace.time_s();
+        let within: Vec<usize> =
+            (0..time_s.len()).filter(|index| (event.from_s..=event.to_s).contains(&time_s[*index])).collect();
+        let mean = |of: &dyn Fn(usize) -> f64| {
+            within.iter().map(|index| of(*index)).sum::<f64>() / within.len().max(1) as f64
+        };
+        let slowing = mean(&|index| drive.motion.slope[index]) < BRAKED_M_S2;
+        let driven = drive.force_n.as_ref().map_or(0.0, |force| mean(&|index| force[index]));
+        slowing && driven < 0.25 * event.force_n
+    };
+    let count = events.iter().filter(braked).count();
+    if 2 * count >= events.len() { "braking" } else { "drawbar_load" }
+}

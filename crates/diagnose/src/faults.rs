@@ -1,0 +1,185 @@
+//! Faults that a channel shows by itself: a value that sticks, steps that are too coarse, samples that are lost.
+
+use crate::balance::Drive0;
+use crate::report::Interval;
+use headland_trace::Trace;
+
+/// A fault of a channel.
+#[derive(Clone, Debug)]
+pub struct Fault {
+    /// The contract's identifier.
+    pub id: &'static str,
+    /// The channel.
+    pub channel: String,
+    /// Step of a coarse channel, share of lost time, or seconds that it stuck.
+    pub size: f64,
+    /// Unit of the size.
+    pub unit: String,
+    /// Where.
+    pub stretches: Vec<Interval>,
+}
+
+/// A value is stuck that stays the same for so long [s] and so many samples.
+const STUCK_S: f64 = 1.0;
+const STUCK_SAMPLES: usize = 15;
+/// Elsewhere a channel that can stick changes from sample to sample, but for this share.
+const STILL: f64 = 0.1;
+/// A channel is coarse where this share of the samples repeats the one before while the vehicle moves.
+const REPEATED: f64 = 0.35;
+/// A gap is so many times the usual period.
+const GAP: f64 = 3.5;
+/// Lost time that matters, as a share.
+const LOST: f64 = 0.01;
+/// Below this the vehicle stands, and channels may well be still [m/s].
+const SLOWEST_M_S: f64 = 0.5;
+
+const LOOKED_AT: [&str; 6] = [
+    "speed_m_s",
+    "wheel_speed_m_s",
+    "tractive_force_n",
+    "specific_force_m_s2",
+    "motor_torque_n_m",
+    "engine_torque_n_m",
+];
+
+/// The faults of all runs, and the samples that may be used.
+pub fn faults(drives: &[Drive0]) -> (Vec<Fault>, Vec<Vec<bool>>) {
+    let mut usable: Vec<Vec<bool>> =
+        drives.iter().map(|drive| vec![true; drive.measured.trace.len()]).collect();
+    let mut all = Vec::new();
+    for name in LOOKED_AT {
+        if let Some(fault) = stuck(drives, name, &mut usable) {
+            all.push(fault);
+        } else if let Some(fault) = coarse(drives, name) {
+            all.push(fault);
+        }
+    }
+    all.extend(lost(drives));
+    (all, usable)
+}
+
+fn place(drive: &Drive0, from: usize, to: usize) -> Interval {
+    let time_s = drive.measured.trace.time_s();
+    Interval {
+        run: drive.measured.id.clone(),
+        from_s: time_s[from],
+        to_s: time_s[to],
+        from_position_m: drive.position_m[from],
+        to_position_m: drive.position_m[to],
+    }
+}
+
+/// Stretches of equal values, first and last sample.
+fn still(values: &[f64]) -> Vec<(usize, usize)> {
+    let mut all = Vec::new();
+    let mut from = 0;
+    for index in 1..=values.len() {
+        if index == values.len() || values[index] != values[from] {
+            if index - from > 1 {
+                all.push((from, index - 1));
+            }
+            from = index;
+        }
+    }
+    all
+}
+
+fn stuck(drives: &[Drive0], name: &str, usable: &mut [Vec<bool>]) -> Option<Fault> {
+    let mut stretches = Vec::new();
+    let mut runs = 0;
+    let mut seconds = 0.0;
+    for (run, drive) in drives.iter().enumerate() {
+        let trace: &Trace = &drive.measured.trace;
+        let Some(values) = trace.get(name) else { continue };
+        let time_s = trace.time_s();
+        let equal = still(values);
+        let long: Vec<(usize, usize)> = equal
+            .iter()
+            .copied()
+            .filter(|(from, to)| {
+                let moving = (*from..=*to).all(|index| drive.motion.value[index] > SLOWEST_M_S);
+                moving
+                    && values[*from] != 0.0
+                    && to - from >= STUCK_SAMPLES
+                    && time_s[*to] - time_s[*from] >= STUCK_S
+            })
+            .collect();
+        let inside: usize = long.iter().map(|(from, to)| to - from).sum();
+        let repeated: usize = equal.iter().map(|(from, to)| to - from).sum();
+        let elsewhere = (repeated - inside) as f64 / (values.len() - inside).max(1) as f64;
+        if long.is_empty() || elsewhere > STILL {
+            continue;
+        }
+        runs += 1;
+        for (from, to) in long {
+            seconds += time_s[to] - time_s[from];
+            stretches.push(place(drive, from, to));
+            usable[run][from..=to].fill(false);
+        }
+    }
+    // What every run shows is how the vehicle was driven, not a fault.
+    (runs > 0 && 2 * runs <= drives.len().max(2)).then(|| Fault {
+        id: "stuck_channel",
+        channel: name.to_owned(),
+        size: seconds,
+        unit: "s".to_owned(),
+        stretches,
+    })
+}
+
+fn coarse(drives: &[Drive0], name: &str) -> Option<Fault> {
+    let (mut repeated, mut count) = (0usize, 0usize);
+    let mut steps: Vec<f64> = Vec::new();
+    for drive in drives {
+        let Some(values) = drive.measured.trace.get(name) else { continue };
+        for (index, pair) in values.windows(2).enumerate() {
+            let step = (pair[1] - pair[0]).abs();
+            if drive.motion.value[index] > SLOWEST_M_S && step.is_finite() && pair[0] != 0.0 {
+                count += 1;
+                if step == 0.0 {
+                    repeated += 1;
+                } else {
+                    steps.push(step);
+                }
+            }
+        }
+    }
+    steps.sort_by(f64::total_cmp);
+    // The smallest but for a few: rounding makes steps of next to nothing.
+    let step = *steps.get(steps.len() / 50)?;
+    let whole = |value: &&f64| ((**value / step) - (**value / step).round()).abs() < 0.05;
+    let multiples = steps.iter().filter(whole).count() as f64 / steps.len() as f64;
+    let coarse = repeated as f64 > REPEATED * count as f64 && multiples > 0.97 && steps.len() > 50;
+    coarse.then(|| Fault {
+        id: "quantisation",
+        channel: name.to_owned(),
+        size: step,
+        unit: headland_units::unit_of_name(name).map_or_else(|| "1".to_owned(), |unit| unit.symbol),
+        stretches: Vec::new(),
+    })
+}
+
+fn lost(drives: &[Drive0]) -> Option<Fault> {
+    let (mut gaps_s, mut whole_s) = (0.0, 0.0);
+    let mut stretches = Vec::new();
+    for drive in drives {
+        let time_s = drive.measured.trace.time_s();
+        let mut periods: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        periods.sort_by(f64::total_cmp);
+        let Some(usual) = periods.get(periods.len() / 2).copied() else { continue };
+        whole_s += drive.measured.trace.duration_s();
+        for (index, pair) in time_s.windows(2).enumerate() {
+            if pair[1] - pair[0] > GAP * usual {
+                gaps_s += pair[1] - pair[0];
+                stretches.push(place(drive, index, index + 1));
+            }
+        }
+    }
+    (gaps_s > LOST * whole_s).then(|| Fault {
+        id: "dropout",
+        channel: "time_s".to_owned(),
+        size: gaps_s / whole_s,
+        unit: "1".to_owned(),
+        stretches,
+    })
+}

@@ -75,6 +75,9 @@ pub struct RunSpec {
 /// A driver who takes back an error of speed within about a second.
 const DRIVER_GAIN_PER_S: f64 = 1.0;
 
+/// No vehicle is simulated in longer steps than this [s].
+const LONGEST_STEP_S: f64 = 10.0;
+
 /// A run that lasts longer than a day has lost its way [s].
 const LONGEST_S: f64 = 86_400.0;
 
@@ -210,7 +213,7 @@ const BOUNDS: [(&str, Bound); 17] = [
     ("air.temperature_c", Bound::Within(-90.0, 70.0)),
     ("gravity_m_s2", Bound::Positive),
     ("driver.gain_per_s", Bound::Positive),
-    ("simulation.step_s", Bound::Positive),
+    ("simulation.step_s", Bound::Within(1e-6, LONGEST_STEP_S)),
     ("simulation.longest_s", Bound::Positive),
     ("replay.window_s", Bound::Positive),
     ("replay.smoothing_s", Bound::Positive),
@@ -461,8 +464,11 @@ fn free(document: &Document, file: &ScenarioFile) -> Result<Vec<Free>, ScenarioE
         if !value.is_finite() {
             return Err(refuse("value", value.to_string(), "a finite number"));
         }
-        if parameter.sd.is_some_and(|sd| sd.is_nan() || sd <= 0.0) {
-            return Err(refuse("sd", format!("{:?}", parameter.sd), "more than 0"));
+        if let Some(sd) = parameter.sd.filter(|sd| sd.is_nan() || *sd <= 0.0) {
+            return Err(refuse("sd", sd.to_string(), "more than 0"));
+        }
+        if all.iter().any(|one: &Free| one.path == path) {
+            return Err(refuse("name", format!("\"{path}\" for the second time"), "each parameter once"));
         }
         if !(bounds.0 < bounds.1 && bounds.0 <= value && value <= bounds.1) {
             let found = format!("({}, {})", bounds.0, bounds.1);

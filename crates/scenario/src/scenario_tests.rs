@@ -142,6 +142,12 @@ fn impossible_values_are_refused_where_they_stand() {
     told(&broken("\"coefficient\"", "\"coefficcient\""), "\"coefficcient\"");
     told(&broken("\"air.wind.speed_m_s\": \"18 km/h\"", "\"air.wind.strength\": 5"), "\"air.wind.strength\"");
     told(&broken("step_s: 0.01", "step_s: 0"), "0");
+    told(&broken("step_s: 0.01", "step_s: 100"), "100");
+    let message = told(&broken("sd: 0.01", "sd: -0.01"), "-0.01");
+    assert!(message.contains("`sd` is -0.01, expected more than 0"), "{message}");
+    let message =
+        told(&broken("\"vehicle.mass_kg\"", "\"ground.soil.coefficient\""), "\"ground.soil.coefficient\"");
+    assert!(message.contains("for the second time"), "{message}");
 }
 
 #[test]
@@ -153,6 +159,12 @@ fn a_value_of_another_kind_is_refused() {
     let message = told(&broken("[Coast(", "[Cost("), "Cost");
     assert!(message.contains("did you mean `Coast`?"), "{message}");
     told(&broken("terrain: Flat", "terrain: 5"), "5");
+}
+
+#[test]
+fn values_that_nest_without_end_are_refused_and_not_followed() {
+    let deep = format!("{}1{}", "(a: ".repeat(5000), ")".repeat(5000));
+    assert!(matches!(read(&deep), Err(ScenarioError::Syntax { .. })));
 }
 
 #[test]

@@ -76,8 +76,8 @@ pub struct Cycle {
 /// Below this acceleration [m/s²] a vehicle that wants more has reached the end of its force.
 const NO_MORE_ACCELERATION_M_S2: f64 = 1e-5;
 
-/// A run of more steps would fill the memory: 20 million take some gigabytes.
-const MOST_STEPS: usize = 20_000_000;
+/// A run of more steps would fill the memory: 10 million take some gigabytes, and are a day at 10 ms.
+const MOST_STEPS: usize = 10_000_000;
 
 /// Drives the model through the cycle.
 ///

@@ -113,6 +113,13 @@ fn simulate_one(
     };
     let outcome =
         simulate(&scenario.model(registry)?, cycle).map_err(|error| Failure::Machine(error.to_string()))?;
+    if !outcome.ledger.turnover_j().is_finite() {
+        return Err(Failure::Input(format!(
+            "run `{}`: its energies are no finite numbers; look at the parameters of {}",
+            spec.id,
+            scenario.document().path().display()
+        )));
+    }
     Ok((spec.id.clone(), outcome))
 }
 

@@ -514,6 +514,8 @@ fn parameters(cured: &Cured, case: &Case) -> Vec<ParameterReport> {
             .terms
             .iter()
             .zip(&cured.values)
+            // A term that was not needed is zero, and nothing was estimated.
+            .filter(|(_, (value, ci))| !(*value == 0.0 && *ci == [0.0; 2]))
             .map(|(term, (value, ci))| one(term.name, *value, *ci, term.unit))
             .collect(),
     }

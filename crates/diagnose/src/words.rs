@@ -22,7 +22,7 @@ fn with_unit(parameter: &ParameterReport) -> String {
     let unit = if parameter.unit == "1" { String::new() } else { format!(" {}", parameter.unit) };
     format!(
         "{} {} ({} to {}){unit}",
-        parameter.name.replace('_', " "),
+        headland_units::stem(&parameter.name).replace('_', " "),
         number(parameter.value),
         number(parameter.ci95[0]),
         number(parameter.ci95[1])

@@ -232,7 +232,15 @@ fn say(model: &Model, drive: &Drive0, trace: &Trace, kinds: &[Kind]) -> Result<S
     let brake = modelled.get("brake_force_n").map_or_else(|| vec![0.0; tractive.len()], <[f64]>::to_vec);
     let resistance_n =
         (0..tractive.len()).map(|i| tractive[i] - brake[i] - mass[i] * acceleration[i]).collect();
-    let slope_m_s2 = get("grade").iter().map(|grade| model.gravity_m_s2 * grade / grade.hypot(1.0)).collect();
+    let mut slope_m_s2: Vec<f64> =
+        get("grade").iter().map(|grade| model.gravity_m_s2 * grade / grade.hypot(1.0)).collect();
+    // Slopes that effects add are slopes to an accelerometer as well.
+    for name in ["grade_n", "grade_constant_n"] {
+        for ((slope, force), mass) in slope_m_s2.iter_mut().zip(modelled.get(name).unwrap_or(&[])).zip(&mass)
+        {
+            *slope -= force / mass;
+        }
+    }
     let powers = kinds.iter().any(|kind| matches!(kind, Kind::Battery | Kind::Fuel));
     let by_torque =
         trace.get("motor_torque_n_m").is_some() && model.driveline.force_of_torque_n(1.0, 1.0).is_some();

@@ -248,7 +248,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
         cause(
             "rotating_inertia",
             MOTION,
-            vec![positive("rotating_mass_kg", "kg", 0.06 * around.mass_kg)],
+            vec![linear("rotating_mass_kg", "kg", 0.06 * around.mass_kg)],
             "F = m_rot dv/dt",
             &["acceleration_m_s2"],
             "the inertia of rotating parts",

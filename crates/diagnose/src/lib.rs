@@ -69,9 +69,11 @@ pub fn diagnose(
     }
     let events = spells(&case, &mut balances, &mut pools, &mut found, &sound)?;
     let mut refined = refine::refine(&case, &balances, &pools, &found)?;
+    let unproven = prove::unproven(&found, &refined);
+    refined.causes.retain(|cured| !unproven.contains(&cured.cause.id));
     refine::spells(&case, &balances, &events, &mut refined);
     let proof = prove::prove(&case, &balances, &refined)?;
-    report::report(&case, &balances, &found, &refined, &proof, &faults)
+    report::report(&case, &balances, &found, &refined, &proof, &faults, &unproven)
 }
 
 fn search_all(

@@ -4,6 +4,7 @@ use crate::balance::{Balance, Drive0, Kind, Said, forward};
 use crate::catalogue::{Cause, Class, Form};
 use crate::events::Event;
 use crate::refine::{Cured, Refined, said_with_all};
+use crate::search::Found;
 use crate::trial::{corrected, for_run};
 use crate::{Case, DiagnoseError};
 use headland_scenario::Scenario;
@@ -396,4 +397,14 @@ fn rows(
         errors.push(Errors { before: of(&balance.residual), after: of(&after) });
     }
     Ok((errors, f64::NAN))
+}
+
+/// Causes of balances that do not get better on the runs that were held out. What is a function of time belongs to its own
+/// run, and no other can show it.
+pub fn unproven(found: &[Option<Found>], refined: &Refined) -> Vec<&'static str> {
+    let fails = |cured: &&Cured| {
+        let gain = found[cured.balance].as_ref().and_then(|found| found.held_out_gain);
+        cured.cause.form != Form::OverTime && gain.is_some_and(|gain| gain <= 0.0)
+    };
+    refined.causes.iter().filter(fails).map(|cured| cured.cause.id).collect()
 }

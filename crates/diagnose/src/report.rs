@@ -227,13 +227,10 @@ pub fn report(
     refined: &Refined,
     proof: &Proof,
     faults: &[Fault],
+    unproven: &[&'static str],
 ) -> Result<Diagnosed, DiagnoseError> {
     let mut findings = findings(case, balances, found, refined, proof);
     findings.extend(faults.iter().map(|fault| faulty(fault, balances)));
-    let proven = proven(proof);
-    if !proven {
-        findings.retain(|finding| finding.share_of_mismatch == 0.0 && finding.kind == FindingKind::Artefact);
-    }
     let verdict = verdict(&findings);
     let ids = |wanted: bool| -> Vec<String> {
         let chosen = case.drives.iter().zip(&case.fit).filter(|(_, fit)| **fit == wanted);
@@ -271,11 +268,10 @@ pub fn report(
         })
         .collect();
     let mut notes = case.study.notes.clone();
-    if !proven && !refined.causes.is_empty() {
-        let ids: Vec<&str> = refined.causes.iter().map(|cured| cured.cause.id).collect();
+    if !unproven.is_empty() {
         notes.push(format!(
             "{} would explain the fitted runs, but not those that were held out; so nothing of it is claimed.",
-            ids.join(", ")
+            unproven.join(", ")
         ));
     }
     if case.chosen && ids(false).is_empty() {
@@ -399,14 +395,6 @@ fn tried(case: &Case, balances: &[Balance], found: &[Option<Found>]) -> Vec<Trie
         }
     }
     all
-}
-
-/// Whether what was found makes the runs better that it never saw; where there are none, those that it saw.
-fn proven(proof: &Proof) -> bool {
-    /// At least so much has the error to fall.
-    const FALL: f64 = 0.95;
-    let errors = proof.held_out.as_ref().unwrap_or(&proof.fitted);
-    !(errors.before.is_finite() && errors.after.is_finite()) || errors.after < FALL * errors.before
 }
 
 /// Whether it is in doubt what a finding is: between faults of one sensor the doubt makes no difference.

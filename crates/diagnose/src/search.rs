@@ -51,6 +51,8 @@ pub struct Found {
     pub left: Column,
     /// What the free parameters alone leave of every row.
     pub before: Column,
+    /// Growth of ln p on the runs that were held out, by what was accepted; none where there are none.
+    pub held_out_gain: Option<f64>,
     /// Variance per row that is not noise of the sensors, before and after.
     pub lack_of_fit: (f64, f64),
 }
@@ -136,6 +138,7 @@ pub fn search(
     let lack = |noise: &Noise| (noise.process / noise.sensor.max(f64::MIN_POSITIVE)).min(MOST_LACK);
     Some(Found {
         tried,
+        held_out_gain: state.held_out_gain(&before, &left, &noise),
         lack_of_fit: (lack(&first_noise), lack(&noise)),
         accepted,
         noise: (first_noise, noise),
@@ -299,6 +302,18 @@ impl State<'_> {
             rivals.push((other.trial.cause, other.gain, correlation));
         }
         rivals
+    }
+
+    /// What was accepted, judged on the rows that were never used.
+    fn held_out_gain(&self, before: &Column, left: &Column, noise: &Noise) -> Option<f64> {
+        let whitener = noise.whitener(&self.balance.chunks)?;
+        let mut gain = None;
+        for (index, chunk) in self.balance.chunks.iter().enumerate().filter(|(_, chunk)| !self.fit[chunk.run])
+        {
+            let cost = |column: &Column| whitener.whiten(chunk, &column[index]).norm_squared();
+            *gain.get_or_insert(0.0) += 0.5 * (cost(before) - cost(left));
+        }
+        gain
     }
 
     /// The growth of ln p that the best of all trials reaches by chance once in a hundred, if nothing is missing.

@@ -290,7 +290,10 @@ fn fault(case: &Case, balances: &[Balance], id: &str, step: f64) -> Result<Vec<C
                             "latency" => {
                                 interpolate(time_s, &before.acceleration_m_s2, time_s[index] + step) - made
                             }
-                            "speed_scale" => made / (1.0 + step) - made,
+                            // With a wheel speed beside it, it is that sensor whose scale is wrong.
+                            "speed_scale" if before.measured.trace.get("wheel_speed_m_s").is_none() => {
+                                made / (1.0 + step) - made
+                            }
                             _ => 0.0,
                         };
                         force(before, index) - force(after, index) + remodelled.resistance_n[index]

@@ -399,12 +399,15 @@ fn rows(
     Ok((errors, f64::NAN))
 }
 
-/// Causes of balances that do not get better on the runs that were held out. What is a function of time belongs to its own
+/// Causes of balances that become worse on the runs that were held out. What is a function of time belongs to its own
 /// run, and no other can show it.
 pub fn unproven(found: &[Option<Found>], refined: &Refined) -> Vec<&'static str> {
+    /// A cause may only relieve a free parameter that was pushed beyond its prior; that need not show in other runs. It
+    /// must not harm them.
+    const HARM: f64 = -3.0;
     let fails = |cured: &&Cured| {
         let gain = found[cured.balance].as_ref().and_then(|found| found.held_out_gain);
-        cured.cause.form != Form::OverTime && gain.is_some_and(|gain| gain <= 0.0)
+        cured.cause.form != Form::OverTime && gain.is_some_and(|gain| gain < HARM)
     };
     refined.causes.iter().filter(fails).map(|cured| cured.cause.id).collect()
 }

@@ -31,7 +31,7 @@ fn the_top_folder_holds_what_it_is_meant_to_hold() {
         let name = entry.unwrap().file_name().to_string_lossy().into_owned();
         assert!(TOP.contains(&name.as_str()) || name == "out", "`{name}` has no place at the top");
     }
-    for name in TOP.iter().filter(|name| ![".git", "target", "terrain"].contains(name)) {
+    for name in TOP.iter().filter(|name| ![".git", "target"].contains(name)) {
         assert!(root().join(name).exists(), "`{name}` is missing");
     }
 }

@@ -363,7 +363,10 @@ fn measured(
         match scenario.document().resolve(&one.name) {
             Ok(path) => known.push((path, one.value)),
             Err(_) => {
-                notes.push(format!("the recording knows `{}`, of which the scenario has nothing", one.name));
+                notes.push(format!(
+                    "the recording knows `{}`, which names no one parameter of the scenario",
+                    one.name
+                ));
             }
         }
     }

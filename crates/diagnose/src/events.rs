@@ -7,6 +7,7 @@
 use crate::Case;
 use crate::balance::{Balance, Drive0, Kind};
 use crate::search::Found;
+use headland_units::constants::STANDARD_GRAVITY_M_S2;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
@@ -28,7 +29,9 @@ pub struct Event {
 }
 
 /// Growth of ln p from which on a spell is no accident among some ten thousand stretches.
-pub const LEAST_GAIN: f64 = 25.0;
+pub const LEAST_GAIN: f64 = 40.0;
+/// A weaker spell is what models of vehicles leave over anyway: share of the weight.
+const WEAKEST: f64 = 0.02;
 /// Lengths of stretches that are looked at, in rows.
 const LENGTHS: [usize; 10] = [2, 3, 5, 8, 13, 21, 34, 55, 89, 144];
 /// At most so many spells in a chunk.
@@ -85,7 +88,12 @@ pub fn events(case: &Case, balance: &Balance, found: &Found) -> Vec<Event> {
     };
     let mut all: Vec<Event> = (0..balance.chunks.len()).into_par_iter().flat_map_iter(of_chunk).collect();
     all.sort_by(|one, other| one.run.cmp(&other.run).then(one.from_s.total_cmp(&other.from_s)));
-    joined(all)
+    let weight_n = |event: &Event| {
+        let said = &case.nominal[event.run];
+        said.effective_mass_kg.iter().find(|mass| mass.is_finite()).copied().unwrap_or(0.0)
+            * STANDARD_GRAVITY_M_S2
+    };
+    joined(all).into_iter().filter(|event| event.force_n > WEAKEST * weight_n(event)).collect()
 }
 
 /// Spells that overlap or touch are one, with the force of their means.

@@ -26,6 +26,8 @@ const STUCK_SAMPLES: usize = 15;
 const STILL: f64 = 0.1;
 /// A channel is coarse where this share of the samples repeats the one before while the vehicle moves.
 const REPEATED: f64 = 0.35;
+/// A coarse channel mostly changes by fewer steps than this.
+const FEW_STEPS: f64 = 2.5;
 /// A gap is so many times the usual period.
 const GAP: f64 = 3.5;
 /// Lost time that matters, as a share.
@@ -149,7 +151,12 @@ fn coarse(drives: &[Drive0], name: &str) -> Option<Fault> {
     let step = *steps.get(steps.len() / 50)?;
     let whole = |value: &&f64| ((**value / step) - (**value / step).round()).abs() < 0.05;
     let multiples = steps.iter().filter(whole).count() as f64 / steps.len() as f64;
-    let coarse = repeated as f64 > REPEATED * count as f64 && multiples > 0.97 && steps.len() > 50;
+    // A channel that is held between samples repeats itself too, but then changes by many of its smallest steps.
+    let usual = steps[steps.len() / 2];
+    let coarse = repeated as f64 > REPEATED * count as f64
+        && multiples > 0.97
+        && usual < FEW_STEPS * step
+        && steps.len() > 50;
     coarse.then(|| Fault {
         id: "quantisation",
         channel: name.to_owned(),

@@ -20,8 +20,7 @@
 //! accelerometer feels the pitch of the body, which no scenario knows; so `accelerometer_tilt` is true of every such
 //! case, and naming it counts neither way.
 //!
-//! Not hidden: causes that only a recorded fuel rate or a driver's demand would show (`engine_friction`, `turbo_lag`,
-//! `cold_start`, `regeneration_limit`).
+//! `turbo_lag` shows in a driver's demand, which no log has: where it is hidden, nothing should be claimed.
 
 #![allow(clippy::suboptimal_flops, reason = "equations are written as in their sources")]
 
@@ -36,6 +35,7 @@ pub mod plant;
 pub mod score;
 mod sensor;
 mod truth;
+mod twins;
 mod write;
 
 pub use case::{Case, Kind, Probe, generate, kind_of};
@@ -45,3 +45,4 @@ pub use error::ConcealError;
 pub use plan::{Channel, Nominal, Plan, RunPlan};
 pub use sensor::{Artefact, Sensor};
 pub use truth::{Cause, Prior, Truth};
+pub use twins::{APART, Seen};

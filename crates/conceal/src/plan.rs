@@ -25,6 +25,10 @@ pub struct RunPlan {
     pub id: String,
     /// Whether the lane is driven from its end.
     pub reversed: bool,
+    /// Which lane.
+    pub lane: usize,
+    /// Where this lane begins on the ground [m].
+    pub lane_m: f64,
     /// Whether it is kept from every fit.
     pub held_out: bool,
     /// Where it begins [m].
@@ -71,6 +75,14 @@ pub struct Plan {
     pub channels: Vec<Channel>,
     /// Rows a second.
     pub rate_hz: f64,
+    /// How far the time between two rows is off at most, as a share of it.
+    pub uneven: f64,
+    /// Wind that the anemometer shows, north and east of where it comes from [m/s].
+    pub wind_m_s: [f64; 2],
+    /// Whether the recording says which runs share a lane.
+    pub paths_told: bool,
+    /// Whether it says which runs are kept out.
+    pub held_out_told: bool,
     /// Time that a run rolls before its log begins [s].
     pub before_s: f64,
     /// The scenario.
@@ -81,6 +93,11 @@ impl Plan {
     /// Whether the logs have a channel.
     pub fn has(&self, name: &str) -> bool {
         self.channels.iter().any(|channel| channel.name == name)
+    }
+
+    /// Whether a force at the wheels can be had from the logs: measured, by a torque, or none while coasting.
+    pub fn knows_force(&self) -> bool {
+        ["tractive_force_n", "motor_torque_n_m", "coasting"].iter().any(|name| self.has(name))
     }
 
     /// The sensor of a channel.
@@ -109,8 +126,11 @@ impl Plan {
         speed.hypot(torque)
     }
 
-    /// Noise of the balance of the battery at one second [W].
+    /// Noise of the balance of battery or fuel at one second [W].
     pub fn power_noise_w(&self) -> f64 {
+        if let Some(engine) = &self.vehicle.engine {
+            return engine.heat_j_kg * self.second_noise("fuel_rate_kg_s");
+        }
         let Some(electric) = &self.vehicle.electric else { return 0.0 };
         let current = electric.voltage_v * self.second_noise("battery_current_a");
         let voltage = 30.0 * self.second_noise("battery_voltage_v");

@@ -40,6 +40,15 @@ pub struct Cause {
     pub rms: f64,
     /// That, over the noise of its balance at one second.
     pub strength: f64,
+    /// ln p that it brings over the free parameters, if all noise were white.
+    #[serde(default)]
+    pub evidence: f64,
+    /// Other causes that nobody could tell from it in these runs: the contract's ids.
+    #[serde(default)]
+    pub twins: Vec<String>,
+    /// Column of what it does in power of battery or fuel, where it is a force that only they show.
+    #[serde(default)]
+    pub power_column: Option<String>,
 }
 
 /// What a case conceals.
@@ -53,7 +62,8 @@ pub struct Truth {
     pub case: usize,
     /// Family.
     pub family: String,
-    /// `single`, `two`, `unlisted`, `empty` or `artefact`.
+    /// `single`, `two`, `two_unlisted` (one listed, one not), `two_sensor` (physics and a fault), `unlisted`, `empty`
+    /// or `artefact`.
     pub kind: String,
     /// The causes.
     pub hidden: Vec<Cause>,
@@ -67,7 +77,10 @@ pub struct Truth {
     pub force_noise_n: f64,
     /// Noise of the balance of the battery at one second [W]; 0 where there is none.
     pub power_noise_w: f64,
-    /// Runs that are kept from every fit.
+    /// The hidden physics as the effects of a scenario, where they can be written so; for the best possible fit.
+    #[serde(default)]
+    pub oracle: Option<String>,
+    /// Runs that are kept from every fit; empty where the diagnosis has to choose.
     pub held_out: Vec<String>,
 }
 

@@ -1,6 +1,6 @@
-//! A heavy tractor on soft ground: coast-downs from about 30 and 15 km/h, and driven runs, both ways on one lane.
+//! A heavy tractor on soft ground: coast-downs from about 30 and 15 km/h, and driven runs.
 
-use super::{Logger, Needs, channel, flag, prior, ramps, rounded};
+use super::{Design, Logger, Needs, anemometer, channel, flag, prior, ramps, rounded};
 use crate::course::Course;
 use crate::dice::Dice;
 use crate::plan::{Nominal, Plan, RunPlan};
@@ -22,6 +22,7 @@ pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
         rounded(dice.within(0.045, 0.085)),
         rounded(dice.within(1.17, 1.27)),
     );
+    let design = Design::new(&[10.0, 20.0, 25.0, 50.0, 100.0], needs, dice);
     let scale = 100.0 / 3.6;
     let heading = dice.within(0.0, TAU);
     let accelerometer = dice.chance(0.4) || needs.accelerometer;
@@ -55,6 +56,9 @@ pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
         let sensor = logger.sensor(dice.within(0.04, 0.12), 0.003, 0.002);
         channels.push(channel("specific_force_m_s2", |sample| sample.specific_force_m_s2, sensor, 4));
     }
+    if design.anemometer() {
+        anemometer(&mut channels);
+    }
     let nominal = Nominal {
         priors: vec![
             prior("vehicle.mass_kg", mass, 0.006 * mass, (8000.0, 18_000.0), 0.7, needs, dice),
@@ -71,7 +75,7 @@ pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
     };
     Plan {
         family: "coast",
-        about: "coast-downs and driven runs on soft ground, both ways on one lane".to_owned(),
+        about: "coast-downs and driven runs on soft ground".to_owned(),
         vehicle: Vehicle {
             mass_kg: mass,
             turning_kg: turning,
@@ -85,44 +89,44 @@ pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
             pitch_damping: dice.within(0.15, 0.4),
             antenna_m: dice.within(0.5, 1.5),
             electric: None,
+            engine: None,
         },
         course: Course { heading_rad: heading, bends: Vec::new() },
-        runs: runs(dice),
+        runs: runs(&design, dice),
         channels,
-        rate_hz: if dice.chance(0.5) { 20.0 } else { 50.0 },
+        rate_hz: design.rate_hz,
+        uneven: design.uneven,
+        wind_m_s: design.wind_m_s,
+        paths_told: design.paths_told,
+        held_out_told: design.held_out_told,
         before_s: 1.0,
         nominal,
     }
 }
 
-/// Ten coast-downs and four driven runs; of each kind one is kept out.
-fn runs(dice: &mut Dice) -> Vec<RunPlan> {
-    const DRIVEN: [usize; 4] = [2, 5, 9, 12];
-    const SLOW: [usize; 5] = [1, 4, 7, 10, 13];
-    const HELD_OUT: [usize; 4] = [6, 7, 9, 11];
+/// Coast-downs from about 30 and 15 km/h, and a driven run among every four or so.
+fn runs(design: &Design, dice: &mut Dice) -> Vec<RunPlan> {
     let air_c = dice.within(8.0, 22.0);
     let mut runs = Vec::new();
-    for index in 0..14 {
-        let driven = DRIVEN.contains(&index);
-        let reversed = if driven {
-            DRIVEN.iter().position(|of| *of == index).unwrap_or(0) % 2 == 1
-        } else {
-            index % 2 == 1
-        };
-        let reversed = if SLOW.contains(&index) { index % 4 >= 2 } else { reversed };
-        let top = if SLOW.contains(&index) { dice.within(4.0, 5.2) } else { dice.within(8.0, 9.4) };
-        let (speed, goal, after_s) = if driven {
+    // Kinds shift by one every four runs, so that each is driven both ways.
+    for index in 0..design.runs() {
+        let kind = (index + index / 4) % 4;
+        let reversed = design.reversed[index];
+        let top = if kind == 1 { dice.within(4.0, 5.2) } else { dice.within(8.0, 9.4) };
+        let (speed, goal, after_s) = if kind == 2 {
             let first = dice.within(2.0, 4.0);
             let plan = ramps(dice, first, (2.0, 8.5), (0.25, 0.8), (3.0, 8.0), DRIVEN_S);
             (first, Goal::Follow(plan), DRIVEN_S)
         } else {
             (top, Goal::Coast, 60.0)
         };
-        let from_end = if driven { dice.within(0.0, 15.0) } else { dice.within(60.0, 170.0) };
+        let from_end = if kind == 2 { dice.within(0.0, 15.0) } else { dice.within(60.0, 170.0) };
         runs.push(RunPlan {
             id: format!("run_{:02}", index + 1),
             reversed,
-            held_out: HELD_OUT.contains(&index),
+            lane: design.lanes[index],
+            lane_m: design.lane_m(index),
+            held_out: design.held_out[index],
             position_m: if reversed { LANE_M - from_end } else { from_end },
             speed_m_s: speed,
             ballast_kg: 0.0,

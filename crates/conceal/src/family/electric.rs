@@ -1,6 +1,6 @@
-//! An electric car on the road: motor torque and speed, battery voltage and current, 170 s at 20 Hz.
+//! An electric car on the road: motor torque and speed, battery voltage and current, 170 s each.
 
-use super::{Logger, Needs, channel, flag, prior, ramps, rounded};
+use super::{Design, Logger, Needs, anemometer, channel, flag, prior, ramps, rounded};
 use crate::course::Course;
 use crate::dice::Dice;
 use crate::plan::{Channel, Nominal, Plan, RunPlan};
@@ -12,8 +12,6 @@ use std::f64::consts::TAU;
 const ROAD_M: f64 = 2600.0;
 /// Length of a run [s].
 const RUN_S: f64 = 170.0;
-/// Runs.
-const RUNS: usize = 10;
 
 pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
     let (mass, turning) = (rounded(dice.within(1150.0, 1700.0)), rounded(dice.within(45.0, 85.0)));
@@ -22,6 +20,7 @@ pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
         rounded(dice.within(0.008, 0.013)),
         rounded(dice.within(1.15, 1.28)),
     );
+    let design = Design::new(&[5.0, 10.0, 20.0], needs, dice);
     let drive = Electric {
         voltage_v: dice.within(330.0, 390.0).round(),
         rise_v: dice.within(30.0, 60.0).round(),
@@ -89,7 +88,7 @@ pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
     };
     Plan {
         family: "electric",
-        about: "electric car on a road, both ways, motor and battery logged".to_owned(),
+        about: "electric car on a road, motor and battery logged".to_owned(),
         vehicle: Vehicle {
             mass_kg: mass,
             turning_kg: turning,
@@ -103,17 +102,22 @@ pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
             pitch_damping: dice.within(0.2, 0.4),
             antenna_m: dice.within(0.3, 1.0),
             electric: Some(drive),
+            engine: None,
         },
         course: Course { heading_rad: dice.within(0.0, TAU), bends: Vec::new() },
-        channels: channels(needs, dice),
-        runs: runs(needs, dice),
-        rate_hz: 20.0,
+        channels: channels(needs, &design, dice),
+        runs: runs(needs, &design, dice),
+        rate_hz: design.rate_hz,
+        uneven: design.uneven,
+        wind_m_s: design.wind_m_s,
+        paths_told: design.paths_told,
+        held_out_told: design.held_out_told,
         before_s: 3.0,
         nominal,
     }
 }
 
-fn channels(needs: &Needs, dice: &mut Dice) -> Vec<Channel> {
+fn channels(needs: &Needs, design: &Design, dice: &mut Dice) -> Vec<Channel> {
     let logger = Logger { lag_s: dice.within(0.02, 0.04), hold_s: 0.0 };
     let speed_noise = dice.within(0.012, 0.03);
     let exact = |step: f64| Sensor { step, ..Sensor::default() };
@@ -156,25 +160,30 @@ fn channels(needs: &Needs, dice: &mut Dice) -> Vec<Channel> {
         let sensor = Sensor { step: 0.5, ..Sensor::default() };
         channels.push(channel("air_temperature_c", |sample| sample.air_c, sensor, 1));
     }
+    if design.anemometer() {
+        anemometer(&mut channels);
+    }
     if needs.brake {
         channels.push(flag("brake", |sample| sample.brake));
     }
     channels
 }
 
-fn runs(needs: &Needs, dice: &mut Dice) -> Vec<RunPlan> {
+fn runs(needs: &Needs, design: &Design, dice: &mut Dice) -> Vec<RunPlan> {
     let varied = dice.chance(0.3) || needs.temperatures;
     let usual_c = dice.within(8.0, 24.0);
     let mut runs = Vec::new();
-    for index in 0..RUNS {
+    for index in 0..design.runs() {
         let first = dice.within(5.0, 12.0);
-        let reversed = index % 2 == 1;
+        let reversed = design.reversed[index];
         let from_end = dice.within(5.0, 60.0);
         let plan = ramps(dice, first, (4.0, 24.0), (0.4, 1.6), (6.0, 18.0), RUN_S);
         runs.push(RunPlan {
             id: format!("trip_{:02}", index + 1),
             reversed,
-            held_out: index == 3 || index == 6 || index == 9,
+            lane: design.lanes[index],
+            lane_m: design.lane_m(index),
+            held_out: design.held_out[index],
             position_m: if reversed { ROAD_M - from_end } else { from_end },
             speed_m_s: first,
             ballast_kg: 0.0,

@@ -1,7 +1,9 @@
 //! Families of cases: which vehicle, which runs, which channels.
 
 mod coast;
+mod design;
 mod electric;
+mod fuel;
 mod transport;
 
 use crate::dice::Dice;
@@ -9,6 +11,7 @@ use crate::plan::{Channel, Plan};
 use crate::plant::Sample;
 use crate::sensor::Sensor;
 use crate::truth::Prior;
+pub use design::Design;
 
 /// A family.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -19,6 +22,8 @@ pub enum Family {
     Transport,
     /// An electric car: motor torque and battery.
     Electric,
+    /// A tractor with its engine and fuel logged.
+    Fuel,
 }
 
 /// What a hidden cause needs of the recording, so that it can show at all.
@@ -41,6 +46,12 @@ pub struct Needs {
     pub temperatures: bool,
     /// A brake switch.
     pub brake: bool,
+    /// The same ground in every run.
+    pub one_lane: bool,
+    /// No wind that an anemometer shows.
+    pub calm: bool,
+    /// Force at the wheels.
+    pub force: bool,
     /// Ends of the paths of parameters that the scenario states as they are.
     pub certain: Vec<&'static str>,
     /// Whether every parameter is stated as it is: to test the plant against the model.
@@ -49,7 +60,7 @@ pub struct Needs {
 
 impl Family {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Coast, Self::Transport, Self::Electric];
+    pub const ALL: [Self; 4] = [Self::Coast, Self::Transport, Self::Electric, Self::Fuel];
 
     /// As the truth has it.
     pub fn name(self) -> &'static str {
@@ -57,6 +68,7 @@ impl Family {
             Self::Coast => "coast",
             Self::Transport => "transport",
             Self::Electric => "electric",
+            Self::Fuel => "fuel",
         }
     }
 
@@ -66,6 +78,7 @@ impl Family {
             Self::Coast => coast::plan(needs, dice),
             Self::Transport => transport::plan(needs, dice),
             Self::Electric => electric::plan(needs, dice),
+            Self::Fuel => fuel::plan(needs, dice),
         }
     }
 }
@@ -111,6 +124,14 @@ impl Logger {
 
 fn channel(name: &'static str, pick: fn(&Sample) -> f64, sensor: Sensor, decimals: usize) -> Channel {
     Channel { name, pick, sensor, decimals }
+}
+
+/// An anemometer beside the lane, a value a second: 0.3 m/s and 3°, resolutions of a cup and a vane.
+fn anemometer(channels: &mut Vec<Channel>) {
+    let cup = Sensor { lag_s: 1.0, hold_s: 1.0, step: 0.1, white: 0.3, ..Sensor::default() };
+    let vane = Sensor { step: 0.017, white: 0.05, ..cup };
+    channels.push(channel("wind_speed_m_s", |sample| sample.wind_m_s, cup, 2));
+    channels.push(channel("wind_direction_rad", |sample| sample.wind_from_rad, vane, 3));
 }
 
 fn flag(name: &'static str, pick: fn(&Sample) -> f64) -> Channel {

@@ -1,6 +1,6 @@
-//! A tractor on the road: accelerations and holds, with the tractive force measured, 60 s at 50 Hz.
+//! A tractor on the road: accelerations and holds, with the tractive force measured, 60 s each.
 
-use super::{Logger, Needs, channel, flag, prior, ramps, rounded};
+use super::{Design, Logger, Needs, anemometer, channel, flag, prior, ramps, rounded};
 use crate::course::{Bend, Course};
 use crate::dice::Dice;
 use crate::plan::{Channel, Nominal, Plan, RunPlan};
@@ -12,13 +12,12 @@ use std::f64::consts::TAU;
 const LANE_M: f64 = 640.0;
 /// Length of a run [s].
 const RUN_S: f64 = 60.0;
-/// Runs.
-const RUNS: usize = 10;
 
 pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
     let (mass, turning) = (rounded(dice.within(7000.0, 13_000.0)), rounded(dice.within(300.0, 800.0)));
     let (area, coefficient, density) =
         (rounded(dice.within(4.5, 7.5)), rounded(dice.within(0.014, 0.03)), rounded(dice.within(1.17, 1.27)));
+    let design = Design::new(&[10.0, 20.0, 25.0, 50.0, 100.0], needs, dice);
     let scale = rounded(dice.within(40.0, 60.0));
     let ballast = dice.chance(0.15) || needs.ballast;
     let course = Course { heading_rad: dice.within(0.0, TAU), bends: bends(needs, dice) };
@@ -54,7 +53,7 @@ pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
     };
     Plan {
         family: "transport",
-        about: "tractor on the road, both ways, tractive force measured".to_owned(),
+        about: "tractor on the road, tractive force measured".to_owned(),
         vehicle: Vehicle {
             mass_kg: mass,
             turning_kg: turning,
@@ -68,17 +67,22 @@ pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
             pitch_damping: dice.within(0.15, 0.4),
             antenna_m: dice.within(0.5, 1.5),
             electric: None,
+            engine: None,
         },
-        channels: channels(needs, !course.bends.is_empty(), dice),
+        channels: channels(needs, &design, !course.bends.is_empty(), dice),
         course,
-        runs: runs(ballast, dice),
-        rate_hz: 50.0,
+        runs: runs(ballast, needs.temperatures, &design, dice),
+        rate_hz: design.rate_hz,
+        uneven: design.uneven,
+        wind_m_s: design.wind_m_s,
+        paths_told: design.paths_told,
+        held_out_told: design.held_out_told,
         before_s: 3.0,
         nominal,
     }
 }
 
-fn channels(needs: &Needs, bends: bool, dice: &mut Dice) -> Vec<Channel> {
+fn channels(needs: &Needs, design: &Design, bends: bool, dice: &mut Dice) -> Vec<Channel> {
     let logger = Logger { lag_s: dice.within(0.02, 0.05), hold_s: if dice.chance(0.3) { 0.1 } else { 0.0 } };
     let speed_noise = dice.within(0.012, 0.035);
     let force_noise = dice.within(60.0, 250.0);
@@ -95,7 +99,7 @@ fn channels(needs: &Needs, bends: bool, dice: &mut Dice) -> Vec<Channel> {
         let gnss = Sensor { white: 0.04, drift: 0.1, drift_s: 20.0, step: 0.01, ..Sensor::default() };
         channels.push(channel("position_m", |sample| sample.position_m, gnss, 3));
     }
-    if dice.chance(0.8) || needs.heading {
+    if dice.chance(0.8) || needs.heading || design.anemometer() && bends {
         let compass = Sensor { white: 0.01, step: 0.001, ..Sensor::default() };
         channels.push(channel("heading_rad", |sample| sample.heading_rad, compass, 4));
     }
@@ -110,6 +114,13 @@ fn channels(needs: &Needs, bends: bool, dice: &mut Dice) -> Vec<Channel> {
     if bends {
         let gyro = Sensor { white: 2e-4, step: 1e-5, ..Sensor::default() };
         channels.push(channel("curvature_per_m", |sample| sample.curvature_per_m, gyro, 6));
+    }
+    if design.anemometer() {
+        anemometer(&mut channels);
+    }
+    if needs.temperatures {
+        let sensor = Sensor { step: 0.5, ..Sensor::default() };
+        channels.push(channel("air_temperature_c", |sample| sample.air_c, sensor, 1));
     }
     if needs.brake {
         channels.push(flag("brake", |sample| sample.brake));
@@ -130,23 +141,25 @@ fn bends(needs: &Needs, dice: &mut Dice) -> Vec<Bend> {
     middles.map(bend).to_vec()
 }
 
-fn runs(ballast: bool, dice: &mut Dice) -> Vec<RunPlan> {
+fn runs(ballast: bool, varied: bool, design: &Design, dice: &mut Dice) -> Vec<RunPlan> {
     let extra_kg = dice.within(2000.0, 4000.0).round();
-    let air_c = dice.within(5.0, 25.0);
+    let usual_c = dice.within(5.0, 25.0);
     let mut runs = Vec::new();
-    for index in 0..RUNS {
+    for index in 0..design.runs() {
         let first = dice.within(3.0, 7.0);
-        let reversed = index % 2 == 1;
+        let reversed = design.reversed[index];
         let from_end = dice.within(5.0, 30.0);
         let plan = ramps(dice, first, (2.5, 13.0), (0.2, 0.9), (3.0, 9.0), RUN_S);
         runs.push(RunPlan {
             id: format!("run_{:02}", index + 1),
             reversed,
-            held_out: index == 4 || index == 7 || index == 8,
+            lane: design.lanes[index],
+            lane_m: design.lane_m(index),
+            held_out: design.held_out[index],
             position_m: if reversed { LANE_M - from_end } else { from_end },
             speed_m_s: first,
             ballast_kg: if ballast && index % 4 >= 2 { extra_kg } else { 0.0 },
-            air_c,
+            air_c: if varied { dice.within(-10.0, 26.0) } else { usual_c },
             goal: Goal::Follow(plan),
             stop: Stop { after_s: RUN_S, below_m_s: 0.6 },
         });

@@ -30,7 +30,7 @@ const COAST: [(&str, &str); 12] = [
     ("brake_drag", "constant"),
     ("speed_threshold", "speed"),
 ];
-const TRANSPORT: [(&str, &str); 18] = [
+const TRANSPORT: [(&str, &str); 19] = [
     ("wind", "heading"),
     ("grade", "place odd"),
     ("grade_constant", "odd"),
@@ -43,6 +43,7 @@ const TRANSPORT: [(&str, &str); 18] = [
     ("cornering_drag", "bends"),
     ("load_dependence", "load"),
     ("drawbar_load", "spell"),
+    ("drawbar_load/spells", "spell"),
     ("braking", "brakes"),
     ("speed_threshold", "speed"),
     ("driveline_efficiency", "drive"),
@@ -50,7 +51,7 @@ const TRANSPORT: [(&str, &str); 18] = [
     ("shift_transient", "drive at a speed"),
     ("wheel_slip", "slip"),
 ];
-const ELECTRIC: [(&str, &str); 13] = [
+const ELECTRIC: [(&str, &str); 14] = [
     ("wind", "heading"),
     ("grade", "place odd"),
     ("mass", "acceleration"),
@@ -64,6 +65,22 @@ const ELECTRIC: [(&str, &str); 13] = [
     ("auxiliary_power/switched", "auxiliary"),
     ("auxiliary_power/cold", "auxiliary"),
     ("battery_resistance", "battery"),
+    ("regeneration_limit", "brakes"),
+];
+const FUEL: [(&str, &str); 13] = [
+    ("engine_friction", "engine"),
+    ("cold_start", "warm-up"),
+    ("auxiliary_power/constant", "engine"),
+    ("auxiliary_power/switched", "auxiliary"),
+    ("variator_loss", "drive"),
+    ("driveline_efficiency", "drive"),
+    ("turbo_lag", "demand"),
+    ("grade", "place odd"),
+    ("mass", "acceleration"),
+    ("wind", "heading"),
+    ("aerodynamic_drag", "speed"),
+    ("rolling_resistance", "constant"),
+    ("drawbar_load/spells", "spell"),
 ];
 
 fn laws(family: Family) -> &'static [(&'static str, &'static str)] {
@@ -71,6 +88,7 @@ fn laws(family: Family) -> &'static [(&'static str, &'static str)] {
         Family::Coast => &COAST,
         Family::Transport => &TRANSPORT,
         Family::Electric => &ELECTRIC,
+        Family::Fuel => &FUEL,
     }
 }
 
@@ -94,43 +112,70 @@ pub fn pair_of(family: Family, dice: &mut Dice) -> [&'static str; 2] {
     }
 }
 
-/// Laws that no list holds, for families whose force is known.
+/// Laws that no list holds, with the families that can show them.
+const UNLISTED: [(&str, &[Family]); 13] = {
+    use Family::{Coast, Electric, Fuel, Transport};
+    [
+        ("unlisted/fading_wave", &[Coast, Transport]),
+        ("unlisted/three_halves", &[Coast, Transport]),
+        ("unlisted/sticking", &[Coast, Transport]),
+        ("unlisted/lug", &[Coast, Transport]),
+        ("unlisted/hysteresis", &[Transport]),
+        ("unlisted/saturating", &[Coast, Transport]),
+        ("unlisted/latch", &[Transport]),
+        ("unlisted/stiffening", &[Transport, Electric]),
+        ("unlisted/one_sided", &[Transport]),
+        ("unlisted/product", &[Transport]),
+        ("unlisted/clocked", &[Coast, Transport]),
+        ("unlisted/fan_by_speed", &[Electric, Fuel]),
+        ("unlisted/pump_by_change", &[Electric, Fuel]),
+    ]
+};
+
+/// Unlisted laws in a shuffled order, each with the families that can hide it.
 pub fn unlisted_of(dice: &mut Dice) -> Vec<Setting> {
-    const NAMES: [&str; 6] = [
-        "unlisted/fading_wave",
-        "unlisted/three_halves",
-        "unlisted/sticking",
-        "unlisted/lug",
-        "unlisted/hysteresis",
-        "unlisted/saturating",
-    ];
-    let mut all: Vec<Setting> = [Family::Coast, Family::Transport]
-        .into_iter()
-        .flat_map(|family| NAMES.map(|law| Setting { family, law }))
-        .collect();
+    let of = |(law, families): &(&'static str, &'static [Family])| {
+        let law = *law;
+        families.iter().map(move |family| Setting { family: *family, law })
+    };
+    let mut all: Vec<Setting> = UNLISTED.iter().flat_map(of).collect();
     dice.shuffle(&mut all);
     all
+}
+
+/// An unlisted law that a family can hide.
+pub fn unlisted_for(family: Family, dice: &mut Dice) -> &'static str {
+    let fits: Vec<&'static str> =
+        UNLISTED.iter().filter(|(_, families)| families.contains(&family)).map(|(law, _)| *law).collect();
+    fits[dice.below(fits.len())]
 }
 
 /// What a law needs of the recording, so that it can show.
 pub fn ask(law: &str, needs: &mut Needs, dice: &mut Dice) {
     match law {
-        "wind" => needs.heading = true,
+        "wind" => (needs.heading, needs.calm) = (true, true),
         "grade" | "soft_ground" | "unlisted/fading_wave" | "unlisted/lug" => needs.position = true,
         "mass" => needs.certain.push("mass_kg"),
         "aerodynamic_drag" => needs.certain.push("drag_area_m2"),
         "rolling_resistance" | "brake_drag" | "unlisted/sticking" | "unlisted/saturating" => {
             needs.certain.push("coefficient");
         }
+        "multipass" => needs.one_lane = true,
         "load_dependence" => {
             needs.ballast = true;
             needs.certain.push("coefficient");
         }
-        "cornering_drag" => needs.bends = true,
+        "cornering_drag" | "unlisted/one_sided" => needs.bends = true,
         "wheel_slip" => needs.wheel_speed = true,
+        // Without a force at the wheels, losses behind the engine are told from its own by nothing.
+        "variator_loss" | "driveline_efficiency" | "turbo_lag" => needs.force = true,
         "braking" => needs.brake = dice.chance(0.5),
-        "rolling_temperature/cold" | "auxiliary_power/cold" => needs.temperatures = true,
-        "auxiliary_power/constant" => needs.certain.push("standby_power_w"),
+        "rolling_temperature/cold" | "auxiliary_power/cold" | "unlisted/stiffening" => {
+            needs.temperatures = true;
+        }
+        "auxiliary_power/constant" => {
+            needs.certain.extend(["standby_power_w", "accessory_power_w"]);
+        }
         _ => {}
     }
 }
@@ -143,6 +188,7 @@ pub fn draw(law: &str, plan: &Plan, dice: &mut Dice) -> Law {
     let electric = plan.vehicle.electric.is_some();
     let coast = plan.family == "coast";
     let share = plan.vehicle.ground.share(0.0);
+    let fuel = plan.vehicle.engine.is_some();
     let (slow, fast) = if electric {
         (6.0, 20.0)
     } else if coast {
@@ -243,6 +289,9 @@ pub fn draw(law: &str, plan: &Plan, dice: &mut Dice) -> Law {
             let linear_n_s_m = if dice.chance(0.5) { force_n * dice.within(0.03, 0.15) } else { 0.0 };
             Law::DrawbarLoad { force_n: force_n * 1.5, linear_n_s_m, from_s, to_s }
         }
+        "drawbar_load/spells" => Law::DrawbarSpells {
+            spells: spells(plan, dice, (1, 3), (5.0, 16.0), (0.008 * weight, 0.035 * weight), seconds),
+        },
         "speed_threshold" => Law::SpeedThreshold {
             force_n: force_n * 1.3,
             threshold_m_s: dice.within(1.2 * slow, 0.75 * fast),
@@ -258,20 +307,50 @@ pub fn draw(law: &str, plan: &Plan, dice: &mut Dice) -> Law {
             width_m_s: dice.within(0.15, 0.5),
         },
         "wheel_slip" => Law::WheelSlip { coefficient: dice.log_within(0.05, 0.5) },
-        "auxiliary_power/constant" => Law::AuxiliaryConstant { power_w: dice.log_within(300.0, 3500.0) },
-        "auxiliary_power/switched" => Law::AuxiliarySwitched {
-            spells: spells(plan, dice, (1, 3), (15.0, 45.0), (700.0, 4500.0), seconds),
+        // A fan of a tractor takes ten times what a car's heater does; both are on the electric side of the model.
+        "auxiliary_power/constant" => Law::AuxiliaryConstant {
+            power_w: dice.log_within(300.0, 3500.0) * if fuel { 3.0 } else { 1.0 },
         },
+        "auxiliary_power/switched" => {
+            let (low, high) = if fuel { (2500.0, 14_000.0) } else { (700.0, 4500.0) };
+            let length = if fuel { (8.0, 25.0) } else { (15.0, 45.0) };
+            Law::AuxiliarySwitched { spells: spells(plan, dice, (1, 3), length, (low, high), seconds) }
+        }
         "auxiliary_power/cold" => Law::AuxiliaryByCold {
             freezing_power_w: dice.within(800.0, 3500.0),
             balance_temperature_c: dice.within(14.0, 21.0),
         },
         "battery_resistance" => Law::BatteryResistance { resistance_ohm: dice.within(0.04, 0.2) },
-        _ => Law::Other(unlisted(law, force_n, slow, fast, coast, dice)),
+        "engine_friction" => Law::EngineFriction { torque_n_m: dice.log_within(12.0, 70.0) },
+        "cold_start" => Law::ColdStart {
+            cold_torque_n_m: dice.log_within(25.0, 110.0),
+            time_constant_s: dice.within(20.0, 90.0),
+        },
+        "turbo_lag" => Law::TurboLag {
+            time_constant_s: dice.within(0.5, 2.5),
+            unboosted_power_w: mass * dice.within(2.5, 5.0),
+        },
+        "regeneration_limit" => {
+            let no_speed_m_s = dice.within(0.8, 2.5);
+            Law::RegenerationLimit {
+                power_w: dice.log_within(4000.0, 14_000.0),
+                no_speed_m_s,
+                full_speed_m_s: no_speed_m_s + dice.within(1.0, 3.0),
+            }
+        }
+        _ => Law::Other(unlisted(law, plan, force_n, (slow, fast), dice)),
     }
 }
 
-fn unlisted(law: &str, force_n: f64, slow: f64, fast: f64, coast: bool, dice: &mut Dice) -> Unlisted {
+fn unlisted(
+    law: &str,
+    plan: &Plan,
+    force_n: f64,
+    (slow, fast): (f64, f64),
+    dice: &mut Dice,
+) -> Unlisted {
+    let coast = plan.family == "coast";
+    let power_w = dice.log_within(800.0, 4000.0) * if plan.family == "fuel" { 4.0 } else { 1.0 };
     let force_n = force_n * 1.5;
     let speed_m_s = 0.5 * (slow + fast) * dice.within(0.8, 1.2);
     match law {
@@ -285,6 +364,30 @@ fn unlisted(law: &str, force_n: f64, slow: f64, fast: f64, coast: bool, dice: &m
         "unlisted/sticking" => Unlisted::Sticking { force_n: 2.0 * force_n, speed_m_s: 0.4 * speed_m_s },
         "unlisted/lug" => Unlisted::Lug { force_n: force_n * 2.0, wavelength_m: dice.within(7.0, 16.0) },
         "unlisted/hysteresis" => Unlisted::Hysteresis { force_n, acceleration_m_s2: dice.within(0.15, 0.4) },
+        "unlisted/latch" => {
+            let on_m_s = dice.within(0.55, 0.8) * fast;
+            Unlisted::Latch { force_n, on_m_s, off_m_s: on_m_s * dice.within(0.4, 0.7) }
+        }
+        "unlisted/stiffening" => Unlisted::Stiffening {
+            force_n,
+            speed_m_s,
+            middle_c: dice.within(2.0, 14.0),
+            width_k: dice.within(1.5, 5.0),
+        },
+        "unlisted/one_sided" => Unlisted::OneSided { force_n, side_m_s2: dice.within(0.4, 0.9) },
+        "unlisted/product" => Unlisted::Product {
+            force_n,
+            speed_m_s,
+            drive_n: plan.vehicle.mass_kg * dice.within(0.4, 0.7),
+        },
+        "unlisted/clocked" => {
+            let period_s = if coast { dice.within(2.0, 4.5) } else { dice.within(6.0, 20.0) };
+            Unlisted::Clocked { force_n, period_s, phase_s: dice.within(0.0, period_s) }
+        }
+        "unlisted/fan_by_speed" => Unlisted::FanBySpeed { power_w, speed_m_s },
+        "unlisted/pump_by_change" => {
+            Unlisted::PumpByChange { power_w, acceleration_m_s2: dice.within(0.3, 0.6) }
+        }
         _ => Unlisted::Saturating { force_n: force_n * 1.3, speed_m_s: 0.4 * speed_m_s },
     }
 }

@@ -101,6 +101,10 @@ pub enum Law {
         from_s: f64,
         to_s: f64,
     },
+    /// The same in spells of single runs.
+    DrawbarSpells {
+        spells: Vec<Spell>,
+    },
     SpeedThreshold {
         force_n: f64,
         threshold_m_s: f64,
@@ -133,6 +137,23 @@ pub enum Law {
     },
     BatteryResistance {
         resistance_ohm: f64,
+    },
+    EngineFriction {
+        torque_n_m: f64,
+    },
+    ColdStart {
+        cold_torque_n_m: f64,
+        time_constant_s: f64,
+    },
+    /// Remembers the power that boost gives [W].
+    TurboLag {
+        time_constant_s: f64,
+        unboosted_power_w: f64,
+    },
+    RegenerationLimit {
+        power_w: f64,
+        no_speed_m_s: f64,
+        full_speed_m_s: f64,
     },
     Other(Unlisted),
 }
@@ -173,7 +194,7 @@ impl Law {
                 Push { mass_kg: mass_kg * share, ..Push::default() }
             }
             Self::AerodynamicDrag { extra_area_m2 } => {
-                drag(0.5 * now.air_density_kg_m3 * extra_area_m2 * v * v)
+                drag(0.5 * now.air_density_kg_m3 * extra_area_m2 * now.air_speed_2)
             }
             Self::RollingResistance { coefficient } => drag(coefficient * weight),
             Self::RollingSpeedLaw { linear, reference_speed_m_s } => {
@@ -223,6 +244,7 @@ impl Law {
                 let lowered = now.time_s >= *from_s && now.time_s < *to_s;
                 drag(if lowered { force_n + linear_n_s_m * v } else { 0.0 })
             }
+            Self::DrawbarSpells { spells } => drag(spell(spells, now)),
             Self::SpeedThreshold { force_n, threshold_m_s, width_m_s } => {
                 drag(force_n * ((v - threshold_m_s) / width_m_s).clamp(0.0, 1.0))
             }
@@ -245,7 +267,44 @@ impl Law {
             Self::BatteryResistance { resistance_ohm } => {
                 Push { resistance_ohm: *resistance_ohm, ..Push::default() }
             }
-            Self::Other(law) => force(law.forward_n(now)),
+            Self::EngineFriction { torque_n_m } => Push { engine_n_m: *torque_n_m, ..Push::default() },
+            Self::ColdStart { cold_torque_n_m, time_constant_s } => Push {
+                engine_n_m: cold_torque_n_m / (since(now) / time_constant_s).exp(),
+                ..Push::default()
+            },
+            Self::TurboLag { .. } => Push::default(),
+            Self::RegenerationLimit { .. } => force(now.overflow_n),
+            Self::Other(law) => match law.power_w(now) {
+                Some(power_w) => Push { power_w, ..Push::default() },
+                None => force(law.forward_n(now)),
+            },
+        }
+    }
+
+    /// What it remembers after a step [s] more.
+    pub fn remember(&self, now: &Now, step_s: f64) -> f64 {
+        match self {
+            Self::TurboLag { time_constant_s, unboosted_power_w } => {
+                let wanted_w = (now.asked_n * now.speed_m_s - unboosted_power_w).max(0.0);
+                now.memory + (wanted_w - now.memory) * step_s / time_constant_s
+            }
+            Self::Other(law) => law.remember(now),
+            _ => now.memory,
+        }
+    }
+
+    /// Least and greatest force that the drive may give at a speed of the wheels [N].
+    pub fn limits_n(&self, memory: f64, wheel_m_s: f64) -> (f64, f64) {
+        let at_m_s = wheel_m_s.max(0.1);
+        match self {
+            Self::TurboLag { unboosted_power_w, .. } => {
+                (f64::NEG_INFINITY, (unboosted_power_w + memory) / at_m_s)
+            }
+            Self::RegenerationLimit { power_w, no_speed_m_s, full_speed_m_s } => {
+                let share = ((wheel_m_s - no_speed_m_s) / (full_speed_m_s - no_speed_m_s)).clamp(0.0, 1.0);
+                (-power_w * share / at_m_s, f64::INFINITY)
+            }
+            _ => (f64::NEG_INFINITY, f64::INFINITY),
         }
     }
 
@@ -257,7 +316,12 @@ impl Law {
             Self::WheelSlip { .. } => ("m_s", wheel_excess_m_s),
             Self::AuxiliaryConstant { .. }
             | Self::AuxiliarySwitched { .. }
-            | Self::AuxiliaryByCold { .. } => ("w", push.power_w),
+            | Self::AuxiliaryByCold { .. } => ("w", in_source(now, push.power_w)),
+            Self::Other(law) if law.is_power() => ("w", in_source(now, push.power_w)),
+            Self::EngineFriction { .. } | Self::ColdStart { .. } => {
+                ("w", push.engine_n_m * now.engine_rad_s * now.fuel_per_shaft)
+            }
+            Self::TurboLag { .. } => ("n", now.lacking_n),
             Self::BatteryResistance { resistance_ohm } => {
                 ("w", resistance_ohm * now.current_a * now.current_a)
             }
@@ -271,16 +335,22 @@ impl Law {
     }
 }
 
-/// Force of moving air minus that of still air, from vectors in north and east.
+/// Power that a consumer takes from battery or tank [W].
+fn in_source(now: &Now, power_w: f64) -> f64 {
+    if now.fuel_per_shaft > 0.0 { power_w * now.shaft_per_electric * now.fuel_per_shaft } else { power_w }
+}
+
+/// Force of this wind minus that of the known one, from vectors in north and east.
 fn wind_n(now: &Now, speed_m_s: f64, from_rad: f64) -> f64 {
     let way = [now.heading_rad.cos(), now.heading_rad.sin()];
-    let met: [f64; 2] = [
-        now.speed_m_s * way[0] + speed_m_s * from_rad.cos(),
-        now.speed_m_s * way[1] + speed_m_s * from_rad.sin(),
-    ];
-    let pressure = 0.5 * now.air_density_kg_m3 * now.drag_area_m2 * met[0].hypot(met[1]);
-    let moving = pressure * (met[0] * way[0] + met[1] * way[1]);
-    0.5 * now.air_density_kg_m3 * now.drag_area_m2 * now.speed_m_s * now.speed_m_s - moving
+    let blown = |wind: [f64; 2]| {
+        let met: [f64; 2] = [now.speed_m_s * way[0] + wind[0], now.speed_m_s * way[1] + wind[1]];
+        let pressure = 0.5 * now.air_density_kg_m3 * now.drag_area_m2 * met[0].hypot(met[1]);
+        pressure * (met[0] * way[0] + met[1] * way[1])
+    };
+    let known = now.known_wind_m_s;
+    blown(known)
+        - blown([known[0] + speed_m_s * from_rad.cos(), known[1] + speed_m_s * from_rad.sin()])
 }
 
 fn slope(now: &Now, grade: f64) -> Push {

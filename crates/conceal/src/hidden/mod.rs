@@ -5,7 +5,7 @@ mod listed;
 mod told;
 mod unlisted;
 
-pub use draw::{Setting, ask, draw, listed_of, pair_of, unlisted_of};
+pub use draw::{Setting, ask, draw, listed_of, pair_of, unlisted_for, unlisted_of};
 pub use listed::{Law, Spell};
 pub use unlisted::Unlisted;
 
@@ -14,8 +14,10 @@ pub use unlisted::Unlisted;
 pub struct Now {
     /// Time since the log began [s]; negative before.
     pub time_s: f64,
-    /// Place on the lane [m].
+    /// Place on the ground [m]: another lane lies far away.
     pub position_m: f64,
+    /// Place along the lane [m].
+    pub lane_position_m: f64,
     /// Whether the lane is driven from its end.
     pub reversed: bool,
     /// Index of the run.
@@ -24,6 +26,10 @@ pub struct Now {
     pub passes_before: f64,
     /// Speed over ground [m/s].
     pub speed_m_s: f64,
+    /// Speed against the air, squared, with its sign [m²/s²].
+    pub air_speed_2: f64,
+    /// Wind that the scenario knows of: towards north and towards east, and negative [m/s].
+    pub known_wind_m_s: [f64; 2],
     /// Acceleration [m/s²].
     pub acceleration_m_s2: f64,
     /// Direction of travel [rad].
@@ -48,6 +54,20 @@ pub struct Now {
     pub coasting: bool,
     /// Current of the battery [A].
     pub current_a: f64,
+    /// Force at the wheels that the driver wants [N].
+    pub asked_n: f64,
+    /// What friction brakes add, because the drive may not brake as much [N].
+    pub overflow_n: f64,
+    /// What the engine could not give of what was asked [N].
+    pub lacking_n: f64,
+    /// Speed of the engine [rad/s].
+    pub engine_rad_s: f64,
+    /// Power of the fuel for each watt at the crankshaft; 0 without an engine.
+    pub fuel_per_shaft: f64,
+    /// Power at the crankshaft for each watt of electric consumers.
+    pub shaft_per_electric: f64,
+    /// What the cause itself remembers.
+    pub memory: f64,
 }
 
 /// What a hidden cause does.
@@ -67,6 +87,8 @@ pub struct Push {
     pub power_w: f64,
     /// Resistance of the battery [Ω].
     pub resistance_ohm: f64,
+    /// Friction at the crankshaft [N m].
+    pub engine_n_m: f64,
     /// Whether the service brakes are on.
     pub braked: bool,
 }
@@ -83,6 +105,7 @@ impl Push {
             creep: self.creep + other.creep,
             power_w: self.power_w + other.power_w,
             resistance_ohm: self.resistance_ohm + other.resistance_ohm,
+            engine_n_m: self.engine_n_m + other.engine_n_m,
             braked: self.braked || other.braked,
         }
     }

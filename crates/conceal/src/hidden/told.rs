@@ -24,7 +24,7 @@ impl Law {
             Self::Braking { .. } => "braking",
             Self::CorneringDrag { .. } => "cornering_drag",
             Self::LoadDependence { .. } => "load_dependence",
-            Self::DrawbarLoad { .. } => "drawbar_load",
+            Self::DrawbarLoad { .. } | Self::DrawbarSpells { .. } => "drawbar_load",
             Self::SpeedThreshold { .. } => "speed_threshold",
             Self::DrivelineEfficiency { .. } => "driveline_efficiency",
             Self::VariatorLoss { .. } => "variator_loss",
@@ -34,6 +34,10 @@ impl Law {
             | Self::AuxiliarySwitched { .. }
             | Self::AuxiliaryByCold { .. } => "auxiliary_power",
             Self::BatteryResistance { .. } => "battery_resistance",
+            Self::EngineFriction { .. } => "engine_friction",
+            Self::ColdStart { .. } => "cold_start",
+            Self::TurboLag { .. } => "turbo_lag",
+            Self::RegenerationLimit { .. } => "regeneration_limit",
             Self::Other(_) => "unlisted",
         }
     }
@@ -104,6 +108,20 @@ impl Law {
             Self::BatteryResistance { resistance_ohm } => {
                 vec![parameter("resistance_ohm", *resistance_ohm, "ohm")]
             }
+            Self::EngineFriction { torque_n_m } => vec![parameter("torque_n_m", *torque_n_m, "N m")],
+            Self::ColdStart { cold_torque_n_m, time_constant_s } => vec![
+                parameter("cold_torque_n_m", *cold_torque_n_m, "N m"),
+                parameter("time_constant_s", *time_constant_s, "s"),
+            ],
+            Self::TurboLag { time_constant_s, unboosted_power_w } => vec![
+                parameter("time_constant_s", *time_constant_s, "s"),
+                parameter("unboosted_power_w", *unboosted_power_w, "W"),
+            ],
+            Self::RegenerationLimit { power_w, no_speed_m_s, full_speed_m_s } => vec![
+                parameter("power_w", *power_w, "W"),
+                parameter("no_speed_m_s", *no_speed_m_s, "m/s"),
+                parameter("full_speed_m_s", *full_speed_m_s, "m/s"),
+            ],
             Self::Other(law) => law.told(),
             // The speed law's parameters move with the speed they refer to; the rest are functions of place or time.
             Self::RollingSpeedLaw { .. }
@@ -111,6 +129,7 @@ impl Law {
             | Self::PayloadChange { .. }
             | Self::SoftGround { .. }
             | Self::Braking { .. }
+            | Self::DrawbarSpells { .. }
             | Self::AuxiliarySwitched { .. } => Vec::new(),
         }
     }

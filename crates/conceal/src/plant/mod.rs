@@ -14,10 +14,12 @@
 
 mod driver;
 mod electric;
+mod engine;
 mod motion;
 
 pub use driver::{Driver, Goal};
 pub use electric::Electric;
+pub use engine::{Engine, Running};
 pub(crate) use motion::{Begin, drive};
 pub use motion::{Sample, Stop};
 
@@ -83,6 +85,8 @@ pub struct Vehicle {
     pub antenna_m: f64,
     /// Battery and motor, where it has them.
     pub electric: Option<Electric>,
+    /// Engine and transmission, where it has them.
+    pub engine: Option<Engine>,
 }
 
 #[cfg(test)]

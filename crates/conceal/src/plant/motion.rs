@@ -48,6 +48,24 @@ pub struct Sample {
     pub charge: f64,
     /// Temperature of the air [°C].
     pub air_c: f64,
+    /// Wind that the anemometer beside the lane shows [m/s].
+    pub wind_m_s: f64,
+    /// Where it blows from [rad].
+    pub wind_from_rad: f64,
+    /// Speed of the engine [rad/s].
+    pub engine_speed_rad_s: f64,
+    /// Torque at its crankshaft [N m].
+    pub engine_torque_n_m: f64,
+    /// Fuel [kg/s].
+    pub fuel_kg_s: f64,
+    /// Power of battery or fuel for each newton that resists [W/N].
+    pub source_per_n: f64,
+    /// Acceleration of the body [m/s²].
+    pub acceleration_m_s2: f64,
+    /// Load on the ground, hidden parts not included [N].
+    pub load_n: f64,
+    /// Speed against the air, squared, with its sign [m²/s²].
+    pub air_speed_2: f64,
     /// Pitch of the body, nose up [rad].
     pub pitch_rad: f64,
     /// Work of the drive since the run began [J].
@@ -72,6 +90,10 @@ pub(crate) struct Begin {
     pub passes_before: f64,
     pub extra_mass_kg: f64,
     pub air_c: f64,
+    /// Where on the ground the lane begins [m].
+    pub lane_m: f64,
+    /// Wind that is known: towards which it has to be met, north and east [m/s].
+    pub wind: [f64; 2],
 }
 
 /// Drives a run, a sample a step.
@@ -97,6 +119,8 @@ pub(crate) fn drive(
     let (mut pitch, mut pitch_rate) = (0.0_f64, 0.0_f64);
     let mut charge = vehicle.electric.as_ref().map_or(f64::NAN, |electric| electric.charge);
     let mut current_a = 0.0_f64;
+    let mut engine_rad_s = 0.0_f64;
+    let mut memories = vec![0.0; laws.len()];
     let (mut work_j, mut lost_j) = (0.0, 0.0);
     let (mut braked, mut step) = (false, 0u32);
     let omega = std::f64::consts::TAU * vehicle.pitch_hz;
@@ -107,24 +131,45 @@ pub(crate) fn drive(
             return samples;
         }
         let asked_n = driver.ask(goal, time_s, v, braked, STEP_S);
+        let (least_n, most_n) = laws.iter().zip(&memories).fold(
+            (f64::NEG_INFINITY, f64::INFINITY),
+            |(least, most), (law, memory)| {
+                let (lower, upper) = law.limits_n(*memory, u);
+                (lower.max(least), upper.min(most))
+            },
+        );
+        // Friction brakes make up for what the drive may not brake; nothing makes up for a lack of power.
+        let (weakest_n, strongest_n) = vehicle.engine.as_ref().map_or(
+            (f64::NEG_INFINITY, f64::INFINITY),
+            |engine| engine.rim_limits_n(u),
+        );
+        let allowed_n = asked_n.max(least_n.max(weakest_n)).min(most_n.min(strongest_n));
         let (torque, drive_n) = match &vehicle.electric {
             Some(electric) => {
-                let torque = electric.torque_n_m(asked_n, u);
+                let torque = electric.torque_n_m(allowed_n, u);
                 (torque, electric.rim_n(torque))
             }
-            None => (f64::NAN, asked_n),
+            None => (f64::NAN, allowed_n),
         };
+        let (overflow_n, lacking_n) = ((asked_n - least_n).min(0.0), (most_n - asked_n).min(0.0));
         // Forces at mid-step.
         let (v_mid, x_mid) = (v + 0.5 * STEP_S * a, x + 0.5 * STEP_S * v * way(begin.reversed));
+        let heading_rad = course.heading_rad(x_mid, begin.reversed);
+        let met = [v_mid * heading_rad.cos() + begin.wind[0], v_mid * heading_rad.sin() + begin.wind[1]];
+        let air_speed_2 =
+            met[0].hypot(met[1]) * (met[0] * heading_rad.cos() + met[1] * heading_rad.sin());
         let now = Now {
             time_s: time_s + 0.5 * STEP_S,
-            position_m: x_mid,
+            position_m: begin.lane_m + x_mid,
+            lane_position_m: x_mid,
+            air_speed_2,
+            known_wind_m_s: begin.wind,
             reversed: begin.reversed,
             run: begin.run,
             passes_before: begin.passes_before,
             speed_m_s: v_mid,
             acceleration_m_s2: a,
-            heading_rad: course.heading_rad(x_mid, begin.reversed),
+            heading_rad,
             curvature_per_m: course.curvature_per_m(x_mid, begin.reversed),
             mass_kg: load_kg,
             gravity_m_s2: g,
@@ -135,15 +180,29 @@ pub(crate) fn drive(
             drive_n,
             coasting,
             current_a,
+            asked_n,
+            overflow_n,
+            lacking_n,
+            engine_rad_s,
+            fuel_per_shaft: vehicle.engine.as_ref().map_or(0.0, |engine| 1.0 / engine.efficiency),
+            shaft_per_electric: vehicle.engine.as_ref().map_or(1.0, |engine| 1.0 / engine.alternator),
+            memory: 0.0,
         };
-        let push = laws.iter().map(|law| law.push(&now)).fold(Push::default(), Push::and);
+        for (law, memory) in laws.iter().zip(&mut memories) {
+            *memory = law.remember(&Now { memory: *memory, ..now }, STEP_S);
+        }
+        let push = laws
+            .iter()
+            .zip(&memories)
+            .map(|(law, memory)| law.push(&Now { memory: *memory, ..now }))
+            .fold(Push::default(), Push::and);
         braked = push.braked;
         let mass = load_kg + push.mass_kg;
         let turning = vehicle.turning_kg + push.turning_kg;
         let cos_slope = (1.0 - push.sin_slope * push.sin_slope).sqrt();
         let load_n = mass * g * cos_slope;
         let ground_n = now.ground_share * load_n;
-        let air_n = 0.5 * vehicle.air_density_kg_m3 * vehicle.drag_area_m2 * v_mid * v_mid;
+        let air_n = 0.5 * vehicle.air_density_kg_m3 * vehicle.drag_area_m2 * air_speed_2;
         let body_n = push.forward_n - ground_n - air_n - mass * g * push.sin_slope;
         // Creep by the implicit rule: w = u − v.
         let damping = load_n / ((vehicle.creep + push.creep) * u.max(0.5));
@@ -167,6 +226,11 @@ pub(crate) fn drive(
             curvature_per_m: now.curvature_per_m,
             motor_torque_n_m: torque,
             air_c: begin.air_c,
+            wind_m_s: begin.wind[0].hypot(begin.wind[1]),
+            wind_from_rad: begin.wind[1].atan2(begin.wind[0]).rem_euclid(std::f64::consts::TAU),
+            acceleration_m_s2: a_next,
+            load_n: load_kg * g,
+            air_speed_2,
             pitch_rad: pitch,
             charge,
             work_j,
@@ -174,7 +238,10 @@ pub(crate) fn drive(
             kinetic_j: 0.5 * (mass * v * v + turning * u * u),
             hidden: laws
                 .iter()
-                .map(|law| law.amount(&Now { acceleration_m_s2: a_next, ..now }, u - v).1)
+                .zip(&memories)
+                .map(|(law, memory)| {
+                    law.amount(&Now { acceleration_m_s2: a_next, memory: *memory, ..now }, u - v).1
+                })
                 .collect(),
             ..Sample::default()
         };
@@ -187,6 +254,17 @@ pub(crate) fn drive(
             sample.motor_speed_rad_s = motor;
             sample.battery_voltage_v = voltage;
             sample.battery_current_a = current;
+        }
+        if let Some(engine) = &vehicle.engine {
+            let power = engine.shaft_w(drive_n * u, push.power_w);
+            let running = engine.step(power, push.engine_n_m, engine_rad_s);
+            engine_rad_s = running.speed_rad_s;
+            sample.engine_speed_rad_s = running.speed_rad_s;
+            sample.engine_torque_n_m = running.torque_n_m;
+            sample.fuel_kg_s = running.fuel_kg_s;
+            let driving = drive_n > 0.0 && running.fuel_kg_s > 0.0;
+            let share = if driving { 1.0 / engine.transmission } else { engine.transmission };
+            sample.source_per_n = if running.fuel_kg_s > 0.0 { share * u / engine.efficiency } else { 0.0 };
         }
         if time_s >= -0.5 * STEP_S {
             samples.push(sample);

@@ -16,6 +16,7 @@ fn tractor(creep: f64) -> Vehicle {
         pitch_damping: 0.3,
         antenna_m: 0.0,
         electric: None,
+        engine: None,
     }
 }
 
@@ -29,6 +30,8 @@ fn begin(speed_m_s: f64) -> Begin {
         passes_before: 0.0,
         extra_mass_kg: 0.0,
         air_c: 15.0,
+        lane_m: 0.0,
+        wind: [0.0, 0.0],
     }
 }
 

@@ -1,6 +1,7 @@
 //! A case as files.
 
 pub(crate) mod faults;
+mod oracle;
 
 use crate::case::Case;
 use crate::error::ConcealError;
@@ -10,9 +11,14 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
+pub(crate) use oracle::oracle;
+
 pub(crate) fn case(case: &Case, folder: &Path) -> Result<(), ConcealError> {
     fs::create_dir_all(folder).map_err(|source| ConcealError::File { path: folder.to_owned(), source })?;
-    put(&folder.join("scenario.ron"), &scenario(&case.plan, case.truth.case))?;
+    put(&folder.join("scenario.ron"), &scenario(&case.plan, case.truth.case, None))?;
+    if let Some(effects) = &case.truth.oracle {
+        put(&folder.join("oracle.ron"), &scenario(&case.plan, case.truth.case, Some(effects)))?;
+    }
     put(&folder.join("recording.ron"), &recording(case))?;
     for log in &case.logs {
         put(&folder.join(format!("{}.csv", log.id)), &table(&case.plan, log))?;
@@ -29,11 +35,12 @@ pub(crate) fn put(path: &Path, text: &str) -> Result<(), ConcealError> {
     fs::write(path, text).map_err(|source| ConcealError::File { path: path.to_owned(), source })
 }
 
-/// The nominal scenario: no effects, parameters wrong within what `free` states.
-fn scenario(plan: &Plan, case: usize) -> String {
+/// The nominal scenario: no effects, parameters wrong within what `free` states; or, with effects, the true one.
+fn scenario(plan: &Plan, case: usize, effects: Option<&str>) -> String {
     let fill = |text: &str| {
         plan.nominal.priors.iter().fold(text.to_owned(), |text, prior| {
-            text.replace(&format!("{{{}}}", prior.path), &format!("{:?}", prior.nominal))
+            let value = if effects.is_some() { prior.truth } else { prior.nominal };
+            text.replace(&format!("{{{}}}", prior.path), &format!("{value:?}"))
         })
     };
     let mut text = String::from("(\n");
@@ -47,6 +54,9 @@ fn scenario(plan: &Plan, case: usize) -> String {
     );
     let _ = writeln!(text, "    air: (density_kg_m3: {:?}),", plan.vehicle.air_density_kg_m3);
     let _ = writeln!(text, "    gravity_m_s2: {:?},", plan.vehicle.gravity_m_s2);
+    if let Some(effects) = effects {
+        let _ = writeln!(text, "    effects: [{effects}],");
+    }
     text.push_str("    free: [\n");
     for prior in plan.nominal.priors.iter().filter(|prior| prior.free) {
         let (low, high) = prior.bounds;
@@ -69,11 +79,15 @@ fn recording(case: &Case) -> String {
     let mut text = String::from("(\n");
     let _ = writeln!(text, "    about: \"{}\",\n    runs: [", plan.about);
     for run in &plan.runs {
-        let _ = write!(text, "        (id: \"{0}\", file: \"{0}.csv\", path: \"lane\"", run.id);
+        let _ = write!(text, "        (id: \"{0}\", file: \"{0}.csv\"", run.id);
+        if plan.paths_told {
+            let lane = ["lane", "other lane"][run.lane.min(1)];
+            let _ = write!(text, ", path: \"{lane}\"");
+        }
         if run.reversed {
             text.push_str(", reversed: true");
         }
-        if run.held_out {
+        if run.held_out && plan.held_out_told {
             text.push_str(", use: held_out");
         }
         if let (Some(mass), true) = (mass, ballast) {

@@ -24,6 +24,7 @@
 
 #![allow(clippy::suboptimal_flops, reason = "equations are written as in their sources")]
 
+mod assemble;
 mod case;
 mod course;
 mod dice;
@@ -34,6 +35,7 @@ mod plan;
 pub mod plant;
 pub mod score;
 mod sensor;
+pub mod table;
 mod truth;
 mod twins;
 mod write;

@@ -36,6 +36,21 @@ enum Task {
         #[arg(long)]
         out: PathBuf,
     },
+    /// Write what a nominal model leaves over in each case of a set as a table, for other programs
+    Table {
+        /// How many
+        #[arg(long, default_value_t = 60)]
+        cases: usize,
+        /// Seed of the set
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        /// Number of the first case
+        #[arg(long, default_value_t = 0)]
+        first: usize,
+        /// Where the tables are put
+        #[arg(long)]
+        out: PathBuf,
+    },
     /// Diagnose every case that has no diagnosis yet, and write the score
     Score {
         /// The cases
@@ -46,6 +61,12 @@ enum Task {
         /// Leave the true cause out of the library: what is claimed instead?
         #[arg(long)]
         without_truth: bool,
+        /// How many cases at a time, each with one thread
+        #[arg(long, default_value_t = 2)]
+        jobs: usize,
+        /// Stop a diagnosis after this many seconds
+        #[arg(long, default_value_t = 1800.0)]
+        limit_s: f64,
         /// Score what is there and run nothing
         #[arg(long)]
         no_run: bool,
@@ -92,8 +113,13 @@ fn run(arguments: Arguments) -> Result<(), ConcealError> {
                 );
             }
         }
-        Task::Score { folder, program, without_truth, no_run, markdown } => {
-            let options = score::Options { program, without_truth, run: !no_run };
+        Task::Table { cases, seed, first, out: folder } => {
+            for case in first..first + cases {
+                headland_conceal::table::export(seed, case, &folder)?;
+            }
+        }
+        Task::Score { folder, program, without_truth, jobs, limit_s, no_run, markdown } => {
+            let options = score::Options { program, without_truth, run: !no_run, jobs, limit_s };
             let progress = |line: &str| {
                 let _ = writeln!(std::io::stderr(), "{line}");
             };

@@ -129,8 +129,7 @@ pub(crate) fn seen(plan: &Plan, laws: &[Law], which: usize, seconds: &[Second]) 
         }
     }
     match law {
-        Law::RegenerationLimit { .. } => twins.push("braking".to_owned()),
-        Law::DrawbarSpells { .. } => twins.push("braking".to_owned()),
+        Law::RegenerationLimit { .. } | Law::DrawbarSpells { .. } => twins.push("braking".to_owned()),
         Law::Braking { .. } if !plan.has("brake") => twins.push("drawbar_load".to_owned()),
         _ => {}
     }
@@ -198,26 +197,26 @@ fn candidates(plan: &Plan, seconds: &[Second], by_source: bool) -> Vec<(&'static
         ("driveline_efficiency", vec![each(&|one| -one.drive_n.abs())]),
     ];
     if plan.has("coasting") {
-        all.push(("neutral_drag", vec![
-            each(&|one| -one.coasting),
-            each(&|one| -one.coasting * one.speed),
-        ]));
+        all.push(("neutral_drag", vec![each(&|one| -one.coasting), each(&|one| -one.coasting * one.speed)]));
     }
     if plan.has("curvature_per_m") {
-        all.push(("cornering_drag", vec![each(&|one| -(one.load_n * one.curvature).powi(2) * one.speed.powi(4))]));
+        all.push((
+            "cornering_drag",
+            vec![each(&|one| -(one.load_n * one.curvature).powi(2) * one.speed.powi(4))],
+        ));
     }
-    for step in 0..8 {
-        let tau = 0.05 * longest * 2f64.powi(step);
+    for step in 0..8_u8 {
+        let tau = 0.05 * longest * 2f64.powi(step.into());
         let fades = |one: &Second| (-one.time_s / tau).exp();
         all.push(("rolling_temperature", vec![each(&|one| -one.load_n * fades(one))]));
-        all.push(("driveline_temperature", vec![
-            each(&|one| -fades(one)),
-            each(&|one| -one.speed * fades(one)),
-        ]));
+        all.push((
+            "driveline_temperature",
+            vec![each(&|one| -fades(one)), each(&|one| -one.speed * fades(one))],
+        ));
         if by_source && plan.vehicle.engine.is_some() {
             all.push(("cold_start", vec![each(&|one| one.engine * fades(one))]));
         }
-        let at = speeds[(speeds.len() - 1) * (step as usize + 1) / 9];
+        let at = speeds[(speeds.len() - 1) * (usize::from(step) + 1) / 9];
         for width in [0.1, 0.5, 2.0] {
             let over = |one: &Second| ((one.speed - at) / width).clamp(0.0, 1.0);
             all.push(("speed_threshold", vec![each(&|one| -over(one))]));
@@ -229,17 +228,18 @@ fn candidates(plan: &Plan, seconds: &[Second], by_source: bool) -> Vec<(&'static
         let factor = 0.5 + 0.06 * f64::from(step);
         all.push(("multipass", vec![each(&|one| -one.load_n * (factor.powf(one.pass) - 1.0))]));
         let load = seconds[0].load_n;
-        let exponent = [-0.7, -0.5, -0.3, 0.3, 0.5, 0.8, 1.0, 1.2][step as usize];
-        all.push(("load_dependence", vec![each(&|one| {
-            -one.load_n * ((one.load_n / load).powf(exponent) - 1.0)
-        })]));
+        let exponent = [-0.7, -0.5, -0.3, 0.3, 0.5, 0.8, 1.0, 1.2][usize::from(step)];
+        all.push((
+            "load_dependence",
+            vec![each(&|one| -one.load_n * ((one.load_n / load).powf(exponent) - 1.0))],
+        ));
         for later in step + 1..9 {
             let (from, to) = (longest * f64::from(step) / 8.0, longest * f64::from(later) / 8.0);
             let lowered = |one: &Second| f64::from(u8::from(one.time_s >= from && one.time_s < to));
-            all.push(("drawbar_load", vec![
-                each(&|one| -lowered(one)),
-                each(&|one| -one.speed * lowered(one)),
-            ]));
+            all.push((
+                "drawbar_load",
+                vec![each(&|one| -lowered(one)), each(&|one| -one.speed * lowered(one))],
+            ));
         }
     }
     if plan.has("air_temperature_c") {

@@ -25,7 +25,7 @@ fn the_same_seed_makes_the_same_bits_and_another_seed_others() {
     assert_ne!(first["run_01.csv"], make("c", 12)["run_01.csv"]);
 }
 
-/// Of a hundred: 40 with one cause, 15 with two, 15 unlisted, 20 empty, 10 faulty, each numbered on its own.
+/// Of a hundred: 35 with one cause, 20 with two, 15 unlisted, 20 empty, 10 faulty, each numbered on its own.
 #[test]
 fn kinds_are_dealt_in_their_shares() {
     let mut numbers: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
@@ -34,7 +34,15 @@ fn kinds_are_dealt_in_their_shares() {
         numbers.entry(kind.name()).or_default().push(number);
     }
     let counts: Vec<(&str, usize)> = numbers.iter().map(|(kind, all)| (*kind, all.len())).collect();
-    let expected = [("artefact", 10), ("empty", 20), ("single", 40), ("two", 15), ("unlisted", 15)];
+    let expected = [
+        ("artefact", 10),
+        ("empty", 20),
+        ("single", 35),
+        ("two", 10),
+        ("two_sensor", 5),
+        ("two_unlisted", 5),
+        ("unlisted", 15),
+    ];
     assert_eq!(counts, expected);
     assert!(numbers.values().all(|all| all.iter().copied().eq(0..all.len())));
 }
@@ -48,7 +56,7 @@ fn a_case_holds_known_channels_and_a_truth_that_its_scenario_does_not_tell() {
         let truth = Truth::read(folder.path()).unwrap();
         let ids = |truth: &Truth| truth.hidden.iter().map(|cause| cause.column.clone()).collect::<Vec<_>>();
         assert_eq!((ids(&truth), &truth.held_out), (ids(&made.truth), &made.truth.held_out), "case {case}");
-        assert!((2..=4).contains(&truth.held_out.len()), "case {case}");
+        assert!(truth.held_out.len() <= 4 && made.logs.len() >= truth.held_out.len() + 2, "case {case}");
         for log in &made.logs {
             for channel in log.trace.channels() {
                 assert!(headland_trace::names::is_known(&channel.name), "{}", channel.name);
@@ -95,7 +103,7 @@ fn a_set_is_scored_with_a_program_and_goes_on_where_it_stopped() {
     // Arguments: diagnose SCENARIO --recording RECORDING --out DIR --quiet
     fs::write(&program, "#!/bin/sh\nprintf '{\"verdict\": \"none\", \"findings\": []}' > \"$6/diagnosis.json\"\necho ran >> \"$6/count\"\n").unwrap();
     fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
-    let options = score::Options { program, without_truth: false, run: true };
+    let options = score::Options { program, without_truth: false, run: true, jobs: 2, limit_s: 60.0 };
     let first = score::all(folder.path(), &options, |_| ()).unwrap();
     let again = score::all(folder.path(), &options, |_| ()).unwrap();
     assert_eq!(fs::read_to_string(folder.path().join("case_000/out/count")).unwrap(), "ran\n");
@@ -110,7 +118,13 @@ fn a_set_is_scored_with_a_program_and_goes_on_where_it_stopped() {
 #[test]
 fn a_folder_without_cases_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let options = score::Options { program: "headland".into(), without_truth: false, run: false };
+    let options = score::Options {
+        program: "headland".into(),
+        without_truth: false,
+        run: false,
+        jobs: 1,
+        limit_s: 60.0,
+    };
     let error = score::all(folder.path(), &options, |_| ()).unwrap_err().to_string();
     assert!(error.contains("holds no case"), "{error}");
 }

@@ -13,6 +13,7 @@ const ROAD_M: f64 = 2600.0;
 /// Length of a run [s].
 const RUN_S: f64 = 170.0;
 
+#[allow(clippy::too_many_lines, reason = "one table of constants")]
 pub(super) fn plan(needs: &Needs, dice: &mut Dice) -> Plan {
     let (mass, turning) = (rounded(dice.within(1150.0, 1700.0)), rounded(dice.within(45.0, 85.0)));
     let (area, coefficient, density) = (

@@ -308,9 +308,9 @@ pub fn draw(law: &str, plan: &Plan, dice: &mut Dice) -> Law {
         },
         "wheel_slip" => Law::WheelSlip { coefficient: dice.log_within(0.05, 0.5) },
         // A fan of a tractor takes ten times what a car's heater does; both are on the electric side of the model.
-        "auxiliary_power/constant" => Law::AuxiliaryConstant {
-            power_w: dice.log_within(300.0, 3500.0) * if fuel { 3.0 } else { 1.0 },
-        },
+        "auxiliary_power/constant" => {
+            Law::AuxiliaryConstant { power_w: dice.log_within(300.0, 3500.0) * if fuel { 3.0 } else { 1.0 } }
+        }
         "auxiliary_power/switched" => {
             let (low, high) = if fuel { (2500.0, 14_000.0) } else { (700.0, 4500.0) };
             let length = if fuel { (8.0, 25.0) } else { (15.0, 45.0) };
@@ -342,13 +342,7 @@ pub fn draw(law: &str, plan: &Plan, dice: &mut Dice) -> Law {
     }
 }
 
-fn unlisted(
-    law: &str,
-    plan: &Plan,
-    force_n: f64,
-    (slow, fast): (f64, f64),
-    dice: &mut Dice,
-) -> Unlisted {
+fn unlisted(law: &str, plan: &Plan, force_n: f64, (slow, fast): (f64, f64), dice: &mut Dice) -> Unlisted {
     let coast = plan.family == "coast";
     let power_w = dice.log_within(800.0, 4000.0) * if plan.family == "fuel" { 4.0 } else { 1.0 };
     let force_n = force_n * 1.5;
@@ -375,11 +369,9 @@ fn unlisted(
             width_k: dice.within(1.5, 5.0),
         },
         "unlisted/one_sided" => Unlisted::OneSided { force_n, side_m_s2: dice.within(0.4, 0.9) },
-        "unlisted/product" => Unlisted::Product {
-            force_n,
-            speed_m_s,
-            drive_n: plan.vehicle.mass_kg * dice.within(0.4, 0.7),
-        },
+        "unlisted/product" => {
+            Unlisted::Product { force_n, speed_m_s, drive_n: plan.vehicle.mass_kg * dice.within(0.4, 0.7) }
+        }
         "unlisted/clocked" => {
             let period_s = if coast { dice.within(2.0, 4.5) } else { dice.within(6.0, 20.0) };
             Unlisted::Clocked { force_n, period_s, phase_s: dice.within(0.0, period_s) }

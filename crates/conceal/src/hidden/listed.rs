@@ -171,6 +171,7 @@ fn spell(spells: &[Spell], now: &Now) -> f64 {
 
 impl Law {
     /// What it does to the plant.
+    #[allow(clippy::too_many_lines, reason = "one arm for each law")]
     pub fn push(&self, now: &Now) -> Push {
         let force = |forward_n: f64| Push { forward_n, ..Push::default() };
         let drag = |against_n: f64| force(-against_n);
@@ -268,10 +269,9 @@ impl Law {
                 Push { resistance_ohm: *resistance_ohm, ..Push::default() }
             }
             Self::EngineFriction { torque_n_m } => Push { engine_n_m: *torque_n_m, ..Push::default() },
-            Self::ColdStart { cold_torque_n_m, time_constant_s } => Push {
-                engine_n_m: cold_torque_n_m / (since(now) / time_constant_s).exp(),
-                ..Push::default()
-            },
+            Self::ColdStart { cold_torque_n_m, time_constant_s } => {
+                Push { engine_n_m: cold_torque_n_m / (since(now) / time_constant_s).exp(), ..Push::default() }
+            }
             Self::TurboLag { .. } => Push::default(),
             Self::RegenerationLimit { .. } => force(now.overflow_n),
             Self::Other(law) => match law.power_w(now) {
@@ -349,8 +349,7 @@ fn wind_n(now: &Now, speed_m_s: f64, from_rad: f64) -> f64 {
         pressure * (met[0] * way[0] + met[1] * way[1])
     };
     let known = now.known_wind_m_s;
-    blown(known)
-        - blown([known[0] + speed_m_s * from_rad.cos(), known[1] + speed_m_s * from_rad.sin()])
+    blown(known) - blown([known[0] + speed_m_s * from_rad.cos(), known[1] + speed_m_s * from_rad.sin()])
 }
 
 fn slope(now: &Now, grade: f64) -> Push {

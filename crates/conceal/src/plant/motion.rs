@@ -139,10 +139,10 @@ pub(crate) fn drive(
             },
         );
         // Friction brakes make up for what the drive may not brake; nothing makes up for a lack of power.
-        let (weakest_n, strongest_n) = vehicle.engine.as_ref().map_or(
-            (f64::NEG_INFINITY, f64::INFINITY),
-            |engine| engine.rim_limits_n(u),
-        );
+        let (weakest_n, strongest_n) = vehicle
+            .engine
+            .as_ref()
+            .map_or((f64::NEG_INFINITY, f64::INFINITY), |engine| engine.rim_limits_n(u));
         let allowed_n = asked_n.max(least_n.max(weakest_n)).min(most_n.min(strongest_n));
         let (torque, drive_n) = match &vehicle.electric {
             Some(electric) => {
@@ -156,8 +156,7 @@ pub(crate) fn drive(
         let (v_mid, x_mid) = (v + 0.5 * STEP_S * a, x + 0.5 * STEP_S * v * way(begin.reversed));
         let heading_rad = course.heading_rad(x_mid, begin.reversed);
         let met = [v_mid * heading_rad.cos() + begin.wind[0], v_mid * heading_rad.sin() + begin.wind[1]];
-        let air_speed_2 =
-            met[0].hypot(met[1]) * (met[0] * heading_rad.cos() + met[1] * heading_rad.sin());
+        let air_speed_2 = met[0].hypot(met[1]) * (met[0] * heading_rad.cos() + met[1] * heading_rad.sin());
         let now = Now {
             time_s: time_s + 0.5 * STEP_S,
             position_m: begin.lane_m + x_mid,

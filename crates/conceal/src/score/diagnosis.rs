@@ -72,6 +72,9 @@ pub struct Fit {
 /// Errors over some runs.
 #[derive(Clone, Debug, Default, Deserialize)]
 pub struct FitPart {
+    /// The runs.
+    #[serde(default)]
+    pub runs: Vec<String>,
     /// With the nominal model.
     #[serde(default)]
     pub rmse_before: Option<f64>,

@@ -12,6 +12,9 @@ fn truth(ids: &[&str]) -> Truth {
         column: format!("{id}_n"),
         rms: 100.0,
         strength: 3.0,
+        evidence: 100.0,
+        twins: Vec::new(),
+        power_column: None,
     };
     Truth {
         schema: crate::truth::SCHEMA.to_owned(),
@@ -32,6 +35,7 @@ fn truth(ids: &[&str]) -> Truth {
         noise: [("speed_m_s".to_owned(), 0.03)].into(),
         force_noise_n: 100.0,
         power_noise_w: 0.0,
+        oracle: None,
         held_out: vec!["r2".to_owned()],
     }
 }
@@ -53,7 +57,7 @@ fn finding(kind: &str, id: &str, others: &str) -> String {
 }
 
 fn outcome(ids: &[&str], verdict: &str, findings: &str) -> Outcome {
-    judge(&truth(ids), &said(verdict, findings), &[], &[])
+    judge(&truth(ids), &said(verdict, findings), None, &[], &[])
 }
 
 #[test]
@@ -65,7 +69,8 @@ fn a_right_first_finding_counts_with_its_interval_and_its_improvement() {
         (Covered { hits: 1, trials: 1 }, Covered { hits: 1, trials: 1 })
     );
     // (0.33 − 0.06) / (0.33 − 0.03)
-    assert!((right.improvement.unwrap() - 0.9).abs() < 1e-12);
+    let improvement = right.improvement.unwrap();
+    assert!((improvement.share - 0.9).abs() < 1e-12 && !improvement.by_oracle);
     assert!(right.false_physics.is_empty());
 }
 
@@ -133,4 +138,87 @@ fn a_force_that_is_half_as_large_has_its_correlation_and_its_slope() {
     };
     assert!((half.correlation - 1.0).abs() < 1e-9 && (half.slope - 0.5).abs() < 1e-9);
     assert!((half.r2 - 0.75).abs() < 0.01, "{}", half.r2);
+}
+
+fn force_of(name: &str, scale: f64) -> Run {
+    let times: Vec<f64> = (0..50).map(f64::from).collect();
+    let values = times.iter().map(|time| scale * (0.3 * time).sin()).collect();
+    let mut trace = Trace::new(times).unwrap();
+    trace.push(name, values, Origin::Measured).unwrap();
+    Run { id: "r2".to_owned(), trace }
+}
+
+/// Brake drag hides; rolling resistance is its twin in these runs, a wind is not.
+#[test]
+fn a_twin_counts_only_where_it_does_the_same() {
+    let mut truth = truth(&["brake_drag"]);
+    truth.hidden[0].twins = vec!["rolling_resistance".to_owned()];
+    let along = [force_of("brake_drag_n", -100.0)];
+    let judged = |findings: &str, column: &str, scale: f64| {
+        judge(&truth, &said("missing_physics", findings), None, &along, &[force_of(column, scale)])
+    };
+    let plain = finding("physics", "rolling_resistance", "");
+    let same = judged(&plain, "rolling_resistance_n", -104.0);
+    assert_eq!((same.found.as_slice(), same.false_physics.len()), ([Found::Twin].as_slice(), 0));
+    let half = judged(&plain, "rolling_resistance_n", -50.0);
+    assert_eq!((half.found.as_slice(), half.false_physics.len()), ([Found::Wrong].as_slice(), 1));
+    // Named as the alternative it is right whatever its size.
+    let other = r#"{"id": "brake_drag", "squared_correlation": 0.99}"#;
+    let named = judged(&finding("physics", "rolling_resistance", other), "rolling_resistance_n", -50.0);
+    assert_eq!(named.found, [Found::Twin]);
+    let wind = judged(&finding("physics", "wind", ""), "wind_n", -104.0);
+    assert_eq!((wind.found.as_slice(), wind.false_physics.len()), ([Found::Wrong].as_slice(), 1));
+    // A fault of a sensor is no twin of physics.
+    let fault = judged(&finding("artefact", "rolling_resistance", ""), "other_n", -104.0);
+    assert_eq!(fault.found, [Found::Wrong]);
+}
+
+#[test]
+fn an_unlisted_cause_is_right_with_its_force_and_rough_without() {
+    let truth = truth(&["unlisted"]);
+    let along = [force_of("unlisted_n", -100.0)];
+    let judged = |kind: &str, id: &str, scale: f64| {
+        let said = said("unlisted", &finding(kind, id, ""));
+        judge(&truth, &said, None, &along, &[force_of(&format!("{id}_n"), scale)])
+    };
+    assert_eq!(judged("unlisted", "unlisted", -95.0).found, [Found::Right]);
+    assert_eq!(judged("unlisted", "unlisted", -40.0).found, [Found::Rough]);
+    let wind = judged("physics", "wind", -95.0);
+    assert_eq!((wind.found.as_slice(), wind.false_physics.len()), ([Found::Wrong].as_slice(), 1));
+}
+
+/// Before 0.33, after 0.06; the true model leaves 0.09: (0.33 − 0.06) / (0.33 − 0.09).
+#[test]
+fn an_improvement_is_held_against_the_true_model_where_it_drove_the_same_runs() {
+    let oracle = |runs: &str| -> Diagnosis {
+        serde_json::from_str(&format!(
+            r#"{{"verdict": "none", "fit": {{"signal": "speed_m_s",
+                "held_out": {{"runs": [{runs}], "rmse_before": 0.09, "rmse_after": 0.09}}}}}}"#
+        ))
+        .unwrap()
+    };
+    let said = said("missing_physics", &finding("physics", "wind", ""));
+    let of = |runs: &str| judge(&truth(&["wind"]), &said, Some(&oracle(runs)), &[], &[]).improvement.unwrap();
+    assert!(of("\"r2\"").by_oracle && (of("\"r2\"").share - 1.125).abs() < 1e-12);
+    assert!(!of("\"r1\"").by_oracle);
+    // What differs from run to run, faults and nothing have none.
+    let mut braked = truth(&["wind"]);
+    braked.hidden[0].law = "braking".to_owned();
+    assert!(judge(&braked, &said, None, &[], &[]).improvement.is_none());
+    assert!(judge(&truth(&[]), &said, None, &[], &[]).improvement.is_none());
+}
+
+/// In a case whose forces only fuel shows, the power that a force takes is held against the power that was found.
+#[test]
+fn a_force_without_a_measured_force_is_held_against_in_power() {
+    let mut truth = truth(&["wind"]);
+    truth.hidden[0].power_column = Some("wind_w".to_owned());
+    let mut along = force_of("wind_n", -100.0);
+    along
+        .trace
+        .push("wind_w", force_of("x", 700.0).trace.get("x").unwrap().to_vec(), Origin::Measured)
+        .unwrap();
+    let said = said("missing_physics", &finding("physics", "wind", ""));
+    let judged = judge(&truth, &said, None, &[along], &[force_of("wind_w", 700.0)]);
+    assert!(judged.reconstruction.unwrap().r2 > 0.999);
 }

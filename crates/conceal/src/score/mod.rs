@@ -7,7 +7,7 @@ mod run;
 mod statistics;
 
 pub use diagnosis::{Diagnosis, Finding, Fit, FitPart, Interval};
-pub use judge::{Covered, Found, Outcome, Reconstruction, judge};
+pub use judge::{Covered, Found, IN_EFFECT, Improvement, Outcome, Reconstruction, judge};
 pub use page::page;
 pub use run::{Options, Scored, all};
 pub use statistics::{correlation, wilson};

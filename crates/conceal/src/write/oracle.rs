@@ -54,10 +54,9 @@ fn effect(law: &Law, plan: &Plan) -> Option<String> {
         Law::PayloadChange { from_s, to_s, mass_kg } => {
             format!("payload_change(times_s: [{from_s:?}, {to_s:?}], masses_kg: [0.0, {mass_kg:?}])")
         }
-        Law::RollingSpeedLaw { linear, reference_speed_m_s } => formula(
-            "-c * N * (v - b_m_s) / b_m_s",
-            &[("c", *linear), ("b_m_s", *reference_speed_m_s)],
-        ),
+        Law::RollingSpeedLaw { linear, reference_speed_m_s } => {
+            formula("-c * N * (v - b_m_s) / b_m_s", &[("c", *linear), ("b_m_s", *reference_speed_m_s)])
+        }
         Law::LoadDependence { coefficient, exponent, reference_mass_kg } => format!(
             "load_dependence(coefficient: {coefficient:?}, exponent: {exponent:?}, reference_mass_kg: \
              {reference_mass_kg:?})"

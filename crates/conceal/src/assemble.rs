@@ -67,6 +67,10 @@ pub(crate) fn assemble(
         (channel.name.to_owned(), channel.sensor.white.hypot(channel.sensor.drift))
     };
     let tilts = plan.has("specific_force_m_s2").then(|| "accelerometer_tilt".to_owned());
+    let coarse = |channel: &crate::plan::Channel| {
+        channel.sensor.white > 0.0 && channel.sensor.step >= channel.sensor.white
+    };
+    let steps = plan.channels.iter().any(coarse).then(|| "quantisation".to_owned());
     let truth = Truth {
         schema: SCHEMA.to_owned(),
         seed,
@@ -74,7 +78,7 @@ pub(crate) fn assemble(
         family: plan.family.to_owned(),
         kind: kind.name().to_owned(),
         hidden,
-        also_true: tilts.into_iter().collect(),
+        also_true: tilts.into_iter().chain(steps).collect(),
         nominal: plan.nominal.priors.clone(),
         noise: plan.channels.iter().map(noise).filter(|(_, noise)| *noise > 0.0).collect(),
         force_noise_n: plan.force_noise_n(),

@@ -18,7 +18,7 @@
 //! `generate --noiseless` makes cases whose scenario is exact and whose sensors are: what `headland compare` then
 //! leaves over is how plant and simulator differ. A case with nothing hidden leaves 1 mm/s or so. A recorded
 //! accelerometer feels the pitch of the body, which no scenario knows; so `accelerometer_tilt` is true of every such
-//! case, and naming it counts neither way.
+//! case, and naming it counts neither way. The same goes for `quantisation` where a bus has steps as coarse as its noise.
 //!
 //! `turbo_lag` shows in a driver's demand, which no log has: where it is hidden, nothing should be claimed.
 

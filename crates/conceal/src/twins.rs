@@ -326,6 +326,8 @@ fn solve(matrix: &mut [Vec<f64>]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dice::Dice;
+    use crate::family::{Family, Needs};
 
     /// y = 3 with σ = 1 over 8 s is worth ½ · 72; a constant explains it whole, a free level of sd 1 but for
     /// ½ · 72 / (1 + 8).
@@ -336,5 +338,62 @@ mod tests {
         assert!((left(&y, &[], &[], 1.0) - 36.0).abs() < 1e-9);
         assert!(left(&y, &[], std::slice::from_ref(&ones), 1.0) < 1e-6);
         assert!((left(&y, &[(ones, 1.0)], &[], 1.0) - 4.0).abs() < 1e-9);
+    }
+
+    /// Two runs of 60 s with speed and acceleration of all kinds; the hidden force is told by the way that is driven.
+    fn twins_of(law: &Law, back: f64, hidden_n: impl Fn(f64) -> f64) -> Vec<String> {
+        let needs = Needs { exact: true, calm: true, ..Needs::default() };
+        let plan = Family::Transport.plan(&needs, &mut Dice::new(4, 0));
+        let load_n = plan.vehicle.mass_kg * plan.vehicle.gravity_m_s2;
+        let mut seconds = Vec::new();
+        for (pass, way) in [1.0, back].into_iter().enumerate() {
+            for second in 0..60 {
+                let time_s = f64::from(second);
+                let speed = 6.0 + 3.0 * (0.4 * time_s).sin() + (0.17 * time_s).cos();
+                seconds.push(Second {
+                    pass: pass as f64,
+                    way,
+                    time_s,
+                    speed,
+                    acceleration: 1.2 * (0.4 * time_s).cos() - 0.17 * (0.17 * time_s).sin(),
+                    heading: if way > 0.0 { 0.3 } else { 0.3 + std::f64::consts::PI },
+                    drive_n: 8000.0 * (0.4 * time_s).cos(),
+                    load_n,
+                    air_speed_2: speed * speed,
+                    hidden: vec![hidden_n(way)],
+                    ..Second::default()
+                });
+            }
+        }
+        let seen = seen(&plan, std::slice::from_ref(law), 0, &seconds);
+        assert!(seen.evidence > 100.0, "{}", seen.evidence);
+        seen.twins
+    }
+
+    #[test]
+    fn a_slope_is_a_drag_where_a_lane_is_driven_one_way_and_none_where_it_is_driven_both_ways() {
+        let slope = Law::GradeConstant { grade: 0.02 };
+        let one_way = twins_of(&slope, 1.0, |way| -2000.0 * way);
+        let both_ways = twins_of(&slope, -1.0, |way| -2000.0 * way);
+        for id in ["brake_drag", "rolling_resistance"] {
+            assert!(one_way.iter().any(|twin| twin == id), "{id} of {one_way:?}");
+            assert!(!both_ways.iter().any(|twin| twin == id), "{id} of {both_ways:?}");
+        }
+    }
+
+    #[test]
+    fn drags_of_flat_ground_stay_twins_both_ways_and_inertia_is_none() {
+        let drag = Law::BrakeDrag { force_n: 2000.0 };
+        let both_ways = twins_of(&drag, -1.0, |_| -2000.0);
+        assert!(both_ways.contains(&"rolling_resistance".to_owned()), "{both_ways:?}");
+        for id in ["grade_constant", "rotating_inertia", "aerodynamic_drag", "wind"] {
+            assert!(!both_ways.iter().any(|twin| twin == id), "{id} of {both_ways:?}");
+        }
+    }
+
+    #[test]
+    fn brakes_are_what_a_limit_of_the_drive_calls_for() {
+        let limit = Law::RegenerationLimit { power_w: 1.0, no_speed_m_s: 0.0, full_speed_m_s: 1.0 };
+        assert!(twins_of(&limit, -1.0, |_| -2000.0).contains(&"braking".to_owned()));
     }
 }

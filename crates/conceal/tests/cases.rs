@@ -128,3 +128,32 @@ fn a_folder_without_cases_is_refused() {
     let error = score::all(folder.path(), &options, |_| ()).unwrap_err().to_string();
     assert!(error.contains("holds no case"), "{error}");
 }
+
+/// Layouts differ from case to case: numbers of runs, ways, rates, uneven rows, what is told and what is measured.
+#[test]
+fn no_two_layouts_are_alike() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut runs, mut rates, mut told, mut ways) = (Vec::new(), Vec::new(), [0, 0], [0, 0]);
+    for case in 0..12 {
+        let made = generate(21, case, Probe::No).unwrap();
+        made.write(folder.path()).unwrap();
+        let recording = fs::read_to_string(folder.path().join("recording.ron")).unwrap();
+        told[usize::from(recording.contains("held_out"))] += 1;
+        assert_eq!(made.truth.held_out.is_empty(), !recording.contains("held_out"), "case {case}");
+        ways[usize::from(recording.contains("reversed"))] += 1;
+        runs.push(made.logs.len());
+        rates.push((made.logs[0].trace.len() as f64 / made.logs[0].trace.duration_s()).round());
+        // What a scenario with the hidden effect needs is whole, or not there.
+        if let Some(effects) = &made.truth.oracle {
+            let scenario = fs::read_to_string(folder.path().join("oracle.ron")).unwrap();
+            assert!(scenario.contains(effects));
+        }
+        let _ = fs::remove_file(folder.path().join("oracle.ron"));
+    }
+    runs.sort_unstable();
+    runs.dedup();
+    rates.sort_by(f64::total_cmp);
+    rates.dedup();
+    assert!(runs.len() >= 4 && rates.len() >= 3, "{runs:?} {rates:?}");
+    assert!(told.iter().chain(&ways).all(|count| *count > 0), "{told:?} {ways:?}");
+}

@@ -127,3 +127,49 @@ fn the_body_pitches_with_acceleration() {
     assert!((last.pitch_rad / (0.002 * acceleration) - 1.0).abs() < 0.05);
     assert!((last.specific_force_m_s2 - acceleration - 9.81 * last.pitch_rad).abs() < 0.01);
 }
+
+/// Braking from 10 m/s with 1 m/s² asks for 25 kW; the drive may give back 12 kW, and brakes do the rest.
+#[test]
+fn where_the_drive_may_not_brake_friction_brakes_do() {
+    let plan = Goal::Follow(vec![(0.0, 10.0), (3.0, 10.0), (9.0, 4.0)]);
+    let stop = Stop { after_s: 9.0, below_m_s: 0.5 };
+    let limit = Law::RegenerationLimit { power_w: 12_000.0, no_speed_m_s: 1.0, full_speed_m_s: 2.0 };
+    let free = drive(&tractor(1e-4), &Course::default(), &[], &plan, &begin(10.0), stop);
+    let limited = drive(&tractor(1e-4), &Course::default(), &[limit], &plan, &begin(10.0), stop);
+    let last = (free.last().unwrap(), limited.last().unwrap());
+    assert!((last.0.speed_m_s - last.1.speed_m_s).abs() < 0.02, "{} {}", last.0.speed_m_s, last.1.speed_m_s);
+    let least =
+        |samples: &[Sample]| samples.iter().map(|one| one.drive_n * one.wheel_speed_m_s).fold(0.0, f64::min);
+    assert!(least(&free) < -20_000.0, "{}", least(&free));
+    assert!((least(&limited) / -12_000.0 - 1.0).abs() < 1e-6, "{}", least(&limited));
+    assert!(limited.iter().any(|one| one.hidden[0] < -500.0));
+}
+
+/// What the engine lacks when the load steps up comes with the time constant of the boost.
+#[test]
+fn an_engine_without_boost_falls_behind_and_catches_up() {
+    let plan = Goal::Follow(vec![(0.0, 3.0), (2.0, 3.0), (7.0, 8.0), (50.0, 8.0)]);
+    let stop = Stop { after_s: 50.0, below_m_s: 0.5 };
+    let lag = Law::TurboLag { time_constant_s: 1.5, unboosted_power_w: 30_000.0 };
+    let samples = drive(&tractor(1e-4), &Course::default(), &[lag], &plan, &begin(3.0), stop);
+    let lacking =
+        |from: usize, to: usize| samples[from..to].iter().map(|one| one.hidden[0]).fold(0.0, f64::min);
+    assert!(lacking(2000, 7000) < -1000.0, "{}", lacking(2000, 7000));
+    assert!(lacking(48_000, 49_900) > -50.0, "{}", lacking(48_000, 49_900));
+}
+
+/// A flap opens at 8 m/s and stays open until 5 m/s.
+#[test]
+fn a_latch_remembers() {
+    use crate::hidden::Unlisted;
+    let plan = Goal::Follow(vec![(0.0, 4.0), (8.0, 10.0), (16.0, 3.0)]);
+    let stop = Stop { after_s: 16.0, below_m_s: 0.5 };
+    let law = Law::Other(Unlisted::Latch { force_n: 100.0, on_m_s: 8.0, off_m_s: 5.0 });
+    let samples = drive(&tractor(1e-4), &Course::default(), &[law], &plan, &begin(4.0), stop);
+    let open_at_6: Vec<bool> = samples
+        .iter()
+        .filter(|one| (one.speed_m_s - 6.0).abs() < 0.05)
+        .map(|one| one.hidden[0] < 0.0)
+        .collect();
+    assert!(!open_at_6[0] && open_at_6[open_at_6.len() - 1]);
+}

@@ -1,0 +1,294 @@
+//! The terms that are tried: every shape of every variable on a coarse grid of constants, and products of two.
+//!
+//! The grid only has to lead into the basin of the best constants, which are polished afterwards.
+
+use crate::shape::{Factor, Shape};
+use crate::term::Term;
+use crate::variable::{Checked, Kind};
+
+/// Powers of a size. Sources of the halves: rolling in soil and flow through gaps have such exponents.
+const POWERS: [f64; 5] = [0.5, 1.0, 1.5, 2.0, 3.0];
+/// Where powers start that the data move.
+const FREE_POWERS: [f64; 2] = [1.25, 2.5];
+/// Scales of curved shapes, as shares of the greatest value.
+const SCALES: [f64; 5] = [0.06, 0.14, 0.3, 0.7, 1.5];
+/// Centres, as shares of the spread.
+const CENTRES: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
+/// Widths of bumps, as shares of the spread.
+const WIDTHS: [f64; 3] = [0.05, 0.12, 0.3];
+/// Widths of steps, as shares of the spread.
+const EDGES: [f64; 2] = [0.02, 0.12];
+/// Turns of an angle in one turn of the vehicle: wind and slope have one, a crown or furrows two.
+const HARMONICS: [u8; 2] = [1, 2];
+
+/// Single terms, and products of two variables. Waves are not here: they are scanned.
+pub(crate) fn dictionary(variables: &[Checked]) -> Vec<Term> {
+    let mut terms: Vec<Term> = Vec::new();
+    for index in 0..variables.len() {
+        terms.extend(full(variables, index).into_iter().map(Term::of));
+    }
+    for one in 0..variables.len() {
+        for other in one + 1..variables.len() {
+            for first in short(variables, one) {
+                for second in short(variables, other) {
+                    terms.extend(Term::product(first, second));
+                }
+            }
+        }
+    }
+    terms
+}
+
+/// What may shape the amplitude of a wave of a variable.
+pub(crate) fn envelopes(variables: &[Checked], wave: usize) -> Vec<Factor> {
+    let mut all = Vec::new();
+    for (index, of) in variables.iter().enumerate() {
+        let make = |shape, scale, centre| Factor { variable: index, shape, scale, centre };
+        match of.known.kind {
+            Kind::Size => {
+                all.extend([1.0, 2.0].map(|p| make(Shape::Power(p), of.round_size(), 0.0)));
+                all.push(make(Shape::Decay, 0.3 * of.size(), 0.0));
+                all.push(make(Shape::Hyperbola, 0.3 * of.size(), 0.0));
+            }
+            Kind::Coordinate if index == wave => {
+                all.extend([0.12, 0.4].map(|share| make(Shape::Decay, share * of.size(), 0.0)));
+                all.extend(
+                    [0.25, 0.5, 0.75]
+                        .map(|share| make(Shape::Bump, 0.2 * of.spread(), of.low + share * of.spread())),
+                );
+            }
+            Kind::Coordinate => all.push(make(Shape::Decay, 0.3 * of.size(), 0.0)),
+            Kind::Gate => all.extend([Shape::On, Shape::Off].map(|shape| make(shape, 1.0, 0.0))),
+            _ => {}
+        }
+    }
+    all
+}
+
+/// Everything that one variable can be.
+fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
+    let of = &variables[index];
+    let make = |shape, scale, centre| Factor { variable: index, shape, scale, centre };
+    let mut all = Vec::new();
+    let curved = |all: &mut Vec<Factor>, shapes: &[Shape], size: f64| {
+        for shape in shapes {
+            all.extend(SCALES.map(|share| make(*shape, share * size, 0.0)));
+        }
+    };
+    let edges = |all: &mut Vec<Factor>| {
+        for share in CENTRES {
+            let centre = of.low + share * of.spread();
+            all.push(make(Shape::Above, of.round_size(), centre));
+            all.push(make(Shape::Below, of.round_size(), centre));
+            all.extend(WIDTHS.map(|width| make(Shape::Bump, width * of.spread(), centre)));
+            all.extend(EDGES.map(|width| make(Shape::Step, width * of.spread(), centre)));
+        }
+    };
+    match of.known.kind {
+        Kind::Size | Kind::Coordinate => {
+            all.extend(POWERS.map(|p| make(Shape::Power(p), of.round_size(), 0.0)));
+            all.extend(FREE_POWERS.map(|p| make(Shape::FreePower(p), of.round_size(), 0.0)));
+            curved(&mut all, &[Shape::Tanh, Shape::Saturation, Shape::Hyperbola, Shape::Decay], of.size());
+            edges(&mut all);
+        }
+        Kind::Level => {
+            all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
+            curved(&mut all, &[Shape::Decay], of.spread());
+            edges(&mut all);
+        }
+        Kind::Signed => {
+            all.extend([0.5, 1.0, 2.0].map(|p| make(Shape::Power(p), of.round_size(), 0.0)));
+            if of.negative {
+                all.extend([1.0, 2.0].map(|p| make(Shape::SignedPower(p), of.round_size(), 0.0)));
+            }
+            curved(&mut all, &[Shape::Tanh], of.size());
+            all.extend(
+                CENTRES.map(|share| make(Shape::Above, of.round_size(), of.low + share * of.spread())),
+            );
+        }
+        Kind::Angle => all.extend(HARMONICS.map(|n| make(Shape::Harmonic(n), 1.0, 0.0))),
+        Kind::Weight => all.push(make(Shape::Power(1.0), of.round_size(), 0.0)),
+        Kind::Gate => all.push(make(Shape::On, 1.0, 0.0)),
+    }
+    all
+}
+
+/// What one variable can be beside another.
+fn short(variables: &[Checked], index: usize) -> Vec<Factor> {
+    let of = &variables[index];
+    let make = |shape, scale, centre| Factor { variable: index, shape, scale, centre };
+    let at = |share: f64| of.low + share * of.spread();
+    let mut all = Vec::new();
+    match of.known.kind {
+        Kind::Size => {
+            all.extend([1.0, 2.0].map(|p| make(Shape::Power(p), of.round_size(), 0.0)));
+            all.extend([0.1, 0.35].map(|share| make(Shape::Decay, share * of.size(), 0.0)));
+            all.extend([0.1, 0.4].map(|share| make(Shape::Tanh, share * of.size(), 0.0)));
+            all.push(make(Shape::Above, of.round_size(), at(0.5)));
+            all.extend([0.25, 0.5, 0.75].map(|share| make(Shape::Bump, 0.12 * of.spread(), at(share))));
+        }
+        Kind::Coordinate => {
+            all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
+            all.extend([0.07, 0.25, 0.8].map(|share| make(Shape::Decay, share * of.size(), 0.0)));
+            all.extend([0.25, 0.5, 0.75].map(|share| make(Shape::Step, 0.03 * of.spread(), at(share))));
+            all.extend(
+                [0.15, 0.38, 0.62, 0.85].map(|share| make(Shape::Bump, 0.12 * of.spread(), at(share))),
+            );
+        }
+        Kind::Level => {
+            all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
+            all.push(make(Shape::Decay, 0.4 * of.spread(), 0.0));
+            all.push(make(Shape::Step, 0.05 * of.spread(), at(0.5)));
+        }
+        Kind::Signed => {
+            all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
+            if of.negative {
+                all.push(make(Shape::SignedPower(1.0), of.round_size(), 0.0));
+            }
+            all.push(make(Shape::Power(2.0), of.round_size(), 0.0));
+        }
+        Kind::Angle => all.push(make(Shape::Harmonic(1), 1.0, 0.0)),
+        Kind::Weight => all.push(make(Shape::Power(1.0), of.round_size(), 0.0)),
+        Kind::Gate => all.extend([Shape::On, Shape::Off].map(|shape| make(shape, 1.0, 0.0))),
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::{Law, write};
+    use crate::polish::Polished;
+    use crate::problem::{Bench, Problem, Rows, Target};
+    use crate::variable::Variable;
+    use headland_effect::Expression;
+    use headland_plugin::{Air, Place, Registry, Situation};
+    use nalgebra::DMatrix;
+
+    struct AsTheyAre;
+
+    impl Rows for AsTheyAre {
+        fn rows(&self, _: usize, samples: &[f64]) -> Vec<f64> {
+            samples.to_vec()
+        }
+    }
+
+    /// Every variable changes, at a pace of its own.
+    fn situations() -> Vec<Situation> {
+        let one = |index: i32| {
+            let k = f64::from(index);
+            Situation {
+                time_s: 0.5 * k,
+                position_m: 3.0 * k - 20.0,
+                speed_m_s: 5.0 + 4.0 * (0.3 * k).sin(),
+                mass_kg: 12_000.0 + 10.0 * k,
+                gravity_m_s2: 9.8 + 1e-4 * k,
+                place: Place {
+                    elevation_m: 100.0 + (0.2 * k).sin(),
+                    sin_slope: 0.05 * (0.21 * k).cos(),
+                    heading_rad: 0.1 * k,
+                    curvature_per_m: 0.02 * (0.17 * k).sin(),
+                    ..Place::default()
+                },
+                air: Air {
+                    density_kg_m3: 1.2 - 1e-3 * k,
+                    wind_speed_m_s: 3.0,
+                    wind_from_rad: 0.4 + 0.05 * k,
+                    temperature_c: -4.0 + 0.3 * k,
+                },
+                drag_area_m2: 6.0 + 0.01 * k,
+                coasting: index % 3 == 0,
+                braking: index % 5 == 0,
+                ..Situation::default()
+            }
+        };
+        (0..64).map(one).collect()
+    }
+
+    fn value(name: &str, at: &Situation) -> f64 {
+        let wind = at.air.wind_from_rad - at.place.heading_rad;
+        match name {
+            "v" => at.speed_m_s,
+            "x" => at.position_m,
+            "t" => at.time_s,
+            "heading" => at.place.heading_rad,
+            "kappa" => at.place.curvature_per_m,
+            "slope" => at.place.sin_slope,
+            "elevation" => at.place.elevation_m,
+            "temperature" => at.air.temperature_c,
+            "m" => at.mass_kg,
+            "g" => at.gravity_m_s2,
+            "N" => at.mass_kg * at.gravity_m_s2 * at.place.cos_slope(),
+            "rho" => at.air.density_kg_m3,
+            "area" => at.drag_area_m2,
+            "coasting" => f64::from(u8::from(at.coasting)),
+            "braking" => f64::from(u8::from(at.braking)),
+            "headwind" => at.air.wind_speed_m_s * wind.cos(),
+            _ => at.air.wind_speed_m_s * wind.sin(),
+        }
+    }
+
+    fn told(law: crate::law::Written) -> Law {
+        Law {
+            text: law.text,
+            constants: law.constants,
+            terms: 1,
+            complexity: 1,
+            gain: 0.0,
+            error: 0.0,
+            error_beyond_best: 0.0,
+            error_beyond_best_sd: 0.0,
+            explained: 0.0,
+            unseen: None,
+            prediction: law.prediction,
+        }
+    }
+
+    /// The effect checks every unit of its formula, so what it reads has units that fit.
+    #[test]
+    fn every_term_has_units_that_fit_and_runs_with_its_own_numbers() {
+        let situations = situations();
+        let variables: Vec<Variable> = crate::known_variables()
+            .map(|(name, unit)| Variable {
+                name: name.to_owned(),
+                unit: unit.to_owned(),
+                runs: vec![situations.iter().map(|at| value(name, at)).collect()],
+            })
+            .collect();
+        let residual = vec![vec![0.0; situations.len()]];
+        let problem = Problem {
+            variables: &variables,
+            target: Target::Force,
+            rows: &AsTheyAre,
+            residual: &residual,
+            nuisances: &[],
+            fit: &[true],
+        };
+        let bench = Bench::new(&problem).unwrap();
+        assert_eq!(bench.variables.len(), variables.len());
+        let mut registry = Registry::new();
+        registry.effect::<Expression>();
+        let mut terms = dictionary(&bench.variables);
+        for wave in [1, 2] {
+            let sine = Factor { variable: wave, shape: Shape::Wave, scale: 7.3, centre: 0.0 };
+            terms.push(Term::of(sine));
+            terms.extend(
+                envelopes(&bench.variables, wave).into_iter().filter_map(|one| Term::product(one, sine)),
+            );
+        }
+        assert!(terms.len() > 1000);
+        for term in terms {
+            let amplitudes = if term.width() == 2 { vec![30.0, -40.0] } else { vec![-30.0] };
+            let count = amplitudes.len() + term.free().len();
+            let law = Polished { terms: vec![term], amplitudes, ..Polished::nothing(&bench) };
+            let law = told(write(&bench, &law, &DMatrix::identity(count, count), 1));
+            let parameters = format!("(resistance: \"{}\", constants: {})", law.text, law.constants_text());
+            let effect = registry.effects.build("expression", &parameters, std::path::Path::new("."));
+            let effect = effect.unwrap_or_else(|error| panic!("{parameters}: {error}"));
+            for (at, told) in situations.iter().zip(&law.prediction[0]) {
+                let found = effect.act(at, &[], &mut []).resistance_n;
+                assert!((found - told).abs() <= 1e-9 * told.abs().max(1.0), "{parameters}: {found}, {told}");
+            }
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! The constants inside a law, by non-linear least squares; amplitudes and nuisances are eliminated.
+//!
+//! Variable projection: for given scales θ the amplitudes β solve a linear problem, so that only θ is searched, with the
+//! derivative of what is left taken as −(1 − C C⁺) ∂C/∂θ β, damped as by Levenberg and Marquardt.
+//! Source: Golub and Pereyra, *SIAM J. Numer. Anal.* 10 (1973); the approximation of the derivative is that of Kaufman,
+//! *BIT* 15 (1975).
+
+use crate::problem::Bench;
+use crate::shape::Free;
+use crate::term::Term;
+use crate::vector::{add, dot, normalise, take_out};
+use nalgebra::{DMatrix, DVector};
+
+/// A law with its constants.
+#[derive(Clone, Debug)]
+pub(crate) struct Polished {
+    pub terms: Vec<Term>,
+    /// Amplitudes, one or two a term.
+    pub amplitudes: Vec<f64>,
+    /// What is left, projected.
+    pub left: Vec<f64>,
+    /// Sum of squares of what is left.
+    pub cost: f64,
+    /// Orthonormal basis of its columns, projected.
+    pub basis: Vec<Vec<f64>>,
+}
+
+/// Which constant of which factor of which term.
+type Place = (usize, usize, Free);
+
+/// Columns of which less than this share is left beside the others make amplitudes that cancel each other.
+const LEAST_LEFT: f64 = 2e-3;
+/// Difference by which derivatives are taken, on the inner scale of a constant.
+const NUDGE: f64 = 1e-4;
+/// A step that promises less than this [nats, twice] is not taken.
+const LEAST_STEP: f64 = 0.02;
+
+impl Polished {
+    /// The law of nothing.
+    pub fn nothing(bench: &Bench) -> Self {
+        let cost = dot(&bench.left, &bench.left);
+        Self { terms: Vec::new(), amplitudes: Vec::new(), left: bench.left.clone(), cost, basis: Vec::new() }
+    }
+
+    /// What it costs to write it down.
+    pub fn complexity(&self) -> usize {
+        self.terms.iter().map(Term::complexity).sum()
+    }
+
+    /// Numbers that were fitted.
+    pub fn constants(&self) -> usize {
+        self.amplitudes.len() + places(&self.terms).len()
+    }
+
+    /// Derivatives of its rows by its inner constants, as they are.
+    pub fn slopes(&self, bench: &Bench) -> Vec<Vec<f64>> {
+        let of = |place: &Place| slope(bench, &self.terms, &self.amplitudes, *place);
+        places(&self.terms).iter().map(of).collect()
+    }
+}
+
+/// The free constants of a law.
+pub(crate) fn places(terms: &[Term]) -> Vec<Place> {
+    let of = |(index, term): (usize, &Term)| {
+        term.free().into_iter().map(move |(factor, free)| (index, factor, free)).collect::<Vec<_>>()
+    };
+    terms.iter().enumerate().flat_map(of).collect()
+}
+
+/// A law with its amplitudes; none where its terms cannot be told apart.
+pub(crate) fn amplitudes(bench: &Bench, terms: Vec<Term>) -> Option<Polished> {
+    let columns: Vec<Vec<f64>> = terms.iter().flat_map(|term| bench.columns(term)).collect();
+    solve(bench, terms, &columns)
+}
+
+fn solve(bench: &Bench, terms: Vec<Term>, columns: &[Vec<f64>]) -> Option<Polished> {
+    let count = columns.len();
+    let mut basis: Vec<Vec<f64>> = Vec::with_capacity(count);
+    let mut triangle = DMatrix::zeros(count, count);
+    for (index, column) in columns.iter().enumerate() {
+        let own = dot(column, column).sqrt();
+        let mut rest = column.clone();
+        // Twice is enough for orthogonality to rounding.
+        for _ in 0..2 {
+            for (row, q) in basis.iter().enumerate() {
+                let share = dot(q, &rest);
+                triangle[(row, index)] += share;
+                add(&mut rest, -share, q);
+            }
+        }
+        let size = normalise(&mut rest);
+        if size.is_nan() || size <= LEAST_LEFT * own {
+            return None;
+        }
+        triangle[(index, index)] = size;
+        basis.push(rest);
+    }
+    let shares = DVector::from_iterator(count, basis.iter().map(|q| dot(q, &bench.left)));
+    let amplitudes = triangle.solve_upper_triangular(&shares)?.as_slice().to_vec();
+    let mut left = bench.left.clone();
+    for (q, share) in basis.iter().zip(&shares) {
+        add(&mut left, -share, q);
+    }
+    let cost = dot(&left, &left);
+    (cost.is_finite() && amplitudes.iter().all(|value| value.is_finite())).then_some(Polished {
+        terms,
+        amplitudes,
+        left,
+        cost,
+        basis,
+    })
+}
+
+/// Derivative of a law's rows by one of its inner constants.
+fn slope(bench: &Bench, terms: &[Term], amplitudes: &[f64], (index, factor, free): Place) -> Vec<f64> {
+    let first: usize = terms[..index].iter().map(Term::width).sum();
+    let share = &amplitudes[first..first + terms[index].width()];
+    let moved = |by: f64| {
+        let mut term = terms[index].clone();
+        let of = &bench.variables[term.factors[factor].variable];
+        let inner = term.factors[factor].inner(free, of) + by;
+        term.factors[factor].set_inner(free, inner, of);
+        term
+    };
+    let sum = |term: &Term, run: usize| {
+        let columns = term.samples(&bench.variables, run);
+        let mut sum = vec![0.0; columns[0].len()];
+        for (column, share) in columns.iter().zip(share) {
+            add(&mut sum, *share, column);
+        }
+        sum
+    };
+    let (below, above) = (moved(-NUDGE), moved(NUDGE));
+    bench.rows(|run| {
+        let (below, above) = (sum(&below, run), sum(&above, run));
+        above.iter().zip(below).map(|(above, below)| (above - below) / (2.0 * NUDGE)).collect()
+    })
+}
+
+/// Moves the free constants downhill, at most so many steps.
+pub(crate) fn polish(bench: &Bench, start: Polished, steps: usize) -> Polished {
+    let places = places(&start.terms);
+    if places.is_empty() {
+        return start;
+    }
+    let mut here = start;
+    let mut damping = 0.01;
+    let mut slopes: Option<Vec<Vec<f64>>> = None;
+    for _ in 0..steps {
+        let current = slopes.get_or_insert_with(|| {
+            let raw = here.slopes(bench);
+            let free = |rows: &Vec<f64>| {
+                let mut slope = bench.project(rows);
+                take_out(&mut slope, &here.basis);
+                slope
+            };
+            raw.iter().map(free).collect()
+        });
+        let count = places.len();
+        let mut matrix = DMatrix::from_fn(count, count, |row, column| dot(&current[row], &current[column]));
+        let downhill = DVector::from_iterator(count, current.iter().map(|slope| dot(slope, &here.left)));
+        let floor = 1e-9 * matrix.diagonal().amax() + f64::MIN_POSITIVE;
+        for index in 0..count {
+            matrix[(index, index)] += damping * matrix[(index, index)] + floor;
+        }
+        let Some(cholesky) = matrix.cholesky() else { break };
+        let step = cholesky.solve(&downhill);
+        if !step.dot(&downhill).is_finite() || step.dot(&downhill) < LEAST_STEP {
+            break;
+        }
+        let next = moved(bench, &here.terms, &places, &step).and_then(|terms| amplitudes(bench, terms));
+        match next {
+            Some(next) if next.cost < here.cost => {
+                let gained = here.cost - next.cost;
+                (here, slopes, damping) = (next, None, (damping * 0.2).max(1e-6));
+                if gained < LEAST_STEP {
+                    break;
+                }
+            }
+            _ => damping *= 8.0,
+        }
+    }
+    here
+}
+
+fn moved(bench: &Bench, terms: &[Term], places: &[Place], step: &DVector<f64>) -> Option<Vec<Term>> {
+    let mut terms = terms.to_vec();
+    for ((term, factor, free), step) in places.iter().zip(step) {
+        let factor = &mut terms[*term].factors[*factor];
+        let of = &bench.variables[factor.variable];
+        let longest = factor.longest_step(*free);
+        factor.set_inner(*free, factor.inner(*free, of) + step.clamp(-longest, longest), of);
+    }
+    step.iter().all(|step| step.is_finite()).then_some(terms)
+}

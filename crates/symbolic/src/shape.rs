@@ -1,0 +1,215 @@
+//! Pure functions of one variable: what a law is made of.
+//!
+//! Each divides its variable by a scale of the same unit, so that its value is a pure number whatever the variable is.
+
+use crate::variable::{Checked, Kind};
+use std::f64::consts::TAU;
+
+/// A function of a variable u with a scale s and a centre c.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Shape {
+    /// (u/s)^p; of |u| where p is not whole.
+    Power(f64),
+    /// |u/s|^p with a power that the data move
+    FreePower(f64),
+    /// sign(u) |u/s|^p
+    SignedPower(f64),
+    /// tanh(u/s)
+    Tanh,
+    /// |u| / (|u| + s)
+    Saturation,
+    /// 1 / (1 + |u|/s): as 1/u, and finite at rest.
+    Hyperbola,
+    /// exp(−u/s)
+    Decay,
+    /// max((u − c)/s, 0)
+    Above,
+    /// max((c − u)/s, 0)
+    Below,
+    /// ½ (1 + tanh((u − c)/s))
+    Step,
+    /// exp(−((u − c)/s)²)
+    Bump,
+    /// sin(2π u/s + φ)
+    Wave,
+    /// sin(n u + φ) of an angle
+    Harmonic(u8),
+    /// u of a gate
+    On,
+    /// 1 − u of a gate
+    Off,
+}
+
+/// A constant inside a shape that the data may move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Free {
+    Scale,
+    Centre,
+    Power,
+}
+
+impl Shape {
+    /// Which constants are free.
+    pub fn free(self) -> &'static [Free] {
+        match self {
+            Self::Tanh | Self::Saturation | Self::Hyperbola | Self::Decay | Self::Wave => &[Free::Scale],
+            Self::FreePower(_) => &[Free::Power],
+            Self::Above | Self::Below => &[Free::Centre],
+            Self::Step | Self::Bump => &[Free::Centre, Free::Scale],
+            _ => &[],
+        }
+    }
+
+    /// Whether it has a phase: then it is two columns, a sine and a cosine.
+    pub fn has_phase(self) -> bool {
+        matches!(self, Self::Wave | Self::Harmonic(_))
+    }
+
+    /// Whether a scale stands in it.
+    pub fn has_scale(self) -> bool {
+        !matches!(self, Self::Harmonic(_) | Self::On | Self::Off)
+    }
+
+    /// Whether a centre stands in it.
+    pub fn has_centre(self) -> bool {
+        self.free().contains(&Free::Centre)
+    }
+}
+
+/// A shape of one variable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Factor {
+    /// Index of the variable.
+    pub variable: usize,
+    pub shape: Shape,
+    /// In the unit of the variable.
+    pub scale: f64,
+    /// In the unit of the variable.
+    pub centre: f64,
+}
+
+/// Whether the formula takes the absolute value: where a root of a negative number would stand, or where a law of size
+/// meets values of both signs.
+fn takes_size(shape: Shape, of: &Checked) -> bool {
+    let both = of.negative && of.known.kind != Kind::Level;
+    match shape {
+        Shape::Power(p) => p.fract() != 0.0 || (both && p.rem_euclid(2.0) == 1.0),
+        Shape::FreePower(_) => true,
+        Shape::Saturation | Shape::Hyperbola => of.negative,
+        Shape::Decay => both,
+        _ => false,
+    }
+}
+
+impl Factor {
+    /// Its value at a sample: the sine, and the cosine where it has a phase.
+    pub fn value(&self, u: f64, of: &Checked) -> (f64, f64) {
+        let Self { scale: s, centre: c, .. } = *self;
+        let u = if takes_size(self.shape, of) { u.abs() } else { u };
+        let value = match self.shape {
+            Shape::Power(p) if p.fract() == 0.0 =>
+            {
+                #[expect(clippy::cast_possible_truncation, reason = "the menu holds small whole powers")]
+                (u / s).powi(p as i32)
+            }
+            Shape::Power(p) | Shape::FreePower(p) => (u / s).powf(p),
+            Shape::SignedPower(p) => (u / s).abs().powf(p) * if u == 0.0 { 0.0 } else { u.signum() },
+            Shape::Tanh => (u / s).tanh(),
+            Shape::Saturation => u / (u + s),
+            Shape::Hyperbola => 1.0 / (1.0 + u / s),
+            Shape::Decay => (-u / s).exp(),
+            Shape::Above => ((u - c) / s).max(0.0),
+            Shape::Below => ((c - u) / s).max(0.0),
+            Shape::Step => 0.5 * (1.0 + ((u - c) / s).tanh()),
+            Shape::Bump => (-((u - c) / s).powi(2)).exp(),
+            Shape::Wave => return (TAU * u / s).sin_cos(),
+            Shape::Harmonic(n) => return (f64::from(n) * u).sin_cos(),
+            Shape::On => u,
+            Shape::Off => 1.0 - u,
+        };
+        (value, 0.0)
+    }
+
+    /// As text, with the names of its scale, centre, phase and power.
+    pub fn text(&self, of: &Checked, [scale, centre, phase, power]: [&str; 4]) -> String {
+        let name = of.known.name;
+        let u = if takes_size(self.shape, of) { format!("abs({name})") } else { name.to_owned() };
+        match self.shape {
+            Shape::Power(1.0) | Shape::SignedPower(1.0) => format!("({u} / {scale})"),
+            Shape::Power(p) => format!("({u} / {scale})^{p}"),
+            Shape::FreePower(_) => format!("({u} / {scale})^{power}"),
+            Shape::SignedPower(p) => format!("sign({u}) * abs({u} / {scale})^{p}"),
+            Shape::Tanh => format!("tanh({u} / {scale})"),
+            Shape::Saturation => format!("({u} / ({u} + {scale}))"),
+            Shape::Hyperbola => format!("(1 / (1 + {u} / {scale}))"),
+            Shape::Decay => format!("exp(-{u} / {scale})"),
+            Shape::Above => format!("max(({u} - {centre}) / {scale}, 0)"),
+            Shape::Below => format!("max(({centre} - {u}) / {scale}, 0)"),
+            Shape::Step => format!("0.5 * (1 + tanh(({u} - {centre}) / {scale}))"),
+            Shape::Bump => format!("exp(-(({u} - {centre}) / {scale})^2)"),
+            Shape::Wave => format!("sin({TAU} * {u} / {scale} + {phase})"),
+            Shape::Harmonic(1) => format!("sin({u} + {phase})"),
+            Shape::Harmonic(n) => format!("sin({n} * {u} + {phase})"),
+            Shape::On => u,
+            Shape::Off => format!("(1 - {u})"),
+        }
+    }
+
+    /// A free constant on the scale on which it is moved: the logarithm of a scale, a centre as a share of the spread,
+    /// a wave as cycles over the spread.
+    pub fn inner(&self, free: Free, of: &Checked) -> f64 {
+        match free {
+            Free::Scale if self.shape == Shape::Wave => of.spread() / self.scale,
+            Free::Scale => self.scale.ln(),
+            Free::Centre => (self.centre - of.low) / of.spread(),
+            Free::Power => self.power(),
+        }
+    }
+
+    /// Sets a free constant; what leaves the sensible range is held at its end.
+    pub fn set_inner(&mut self, free: Free, inner: f64, of: &Checked) {
+        /// A wave has at least this many cycles: slower ones are slopes.
+        const FEWEST_CYCLES: f64 = 0.4;
+        /// Scales, as shares of the spread: below the first nothing is resolved, above the second it is a straight line.
+        const SCALES: (f64, f64) = (0.01, 3.0);
+        /// Centres, as shares of the spread.
+        const CENTRES: (f64, f64) = (-0.1, 1.1);
+        /// Powers: below the first a constant, above the second a wall.
+        const POWERS: (f64, f64) = (0.2, 6.0);
+        match free {
+            Free::Scale if self.shape == Shape::Wave => self.scale = of.spread() / inner.max(FEWEST_CYCLES),
+            Free::Scale => {
+                let largest = if of.known.kind == Kind::Level { of.spread() } else { of.size() };
+                self.scale = inner.exp().clamp(SCALES.0 * of.spread(), SCALES.1 * largest);
+            }
+            Free::Centre => self.centre = of.low + of.spread() * inner.clamp(CENTRES.0, CENTRES.1),
+            Free::Power => self.shape = Shape::FreePower(inner.clamp(POWERS.0, POWERS.1)),
+        }
+    }
+
+    /// How far a free constant may move in one step, on its inner scale.
+    pub fn longest_step(&self, free: Free) -> f64 {
+        match free {
+            Free::Scale if self.shape == Shape::Wave => 0.25,
+            Free::Scale => 0.7,
+            Free::Centre => 0.15,
+            Free::Power => 0.5,
+        }
+    }
+
+    /// What it costs to write it down: itself, and every constant that was free.
+    pub fn complexity(&self) -> usize {
+        1 + self.shape.free().len() + usize::from(self.shape.has_phase())
+    }
+
+    /// What it is, without its constants: variable, shape, exponent.
+    pub fn family(&self) -> (usize, String) {
+        let shape = if let Shape::FreePower(_) = self.shape { Shape::FreePower(1.0) } else { self.shape };
+        (self.variable, format!("{shape:?}"))
+    }
+
+    /// The power that the data moved; 1 where there is none.
+    pub fn power(&self) -> f64 {
+        if let Shape::FreePower(power) = self.shape { power } else { 1.0 }
+    }
+}

@@ -1,0 +1,81 @@
+//! A term of a law: an amplitude in the unit of the target times shapes that are pure numbers.
+
+use crate::shape::{Factor, Free, Shape};
+use crate::variable::Checked;
+
+/// One or two factors; the amplitude is linear and not held here.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Term {
+    pub factors: Vec<Factor>,
+}
+
+impl Term {
+    /// A term of one factor.
+    pub fn of(factor: Factor) -> Self {
+        Self { factors: vec![factor] }
+    }
+
+    /// A term of two; none where both have a phase, or where a gate meets itself.
+    pub fn product(one: Factor, other: Factor) -> Option<Self> {
+        let phases = one.shape.has_phase() && other.shape.has_phase();
+        (!phases).then(|| Self { factors: vec![one, other] })
+    }
+
+    /// How many linear columns it is.
+    pub fn width(&self) -> usize {
+        if self.factors.iter().any(|factor| factor.shape.has_phase()) { 2 } else { 1 }
+    }
+
+    /// Its columns in one run, sample by sample.
+    pub fn samples(&self, variables: &[Checked], run: usize) -> Vec<Vec<f64>> {
+        let length = self.factors.first().map_or(0, |first| variables[first.variable].runs[run].len());
+        let mut envelope = vec![1.0; length];
+        let mut phased: Option<(Vec<f64>, Vec<f64>)> = None;
+        for factor in &self.factors {
+            let of = &variables[factor.variable];
+            let values = of.runs[run].iter().map(|u| factor.value(*u, of));
+            if factor.shape.has_phase() {
+                phased = Some(values.unzip());
+            } else {
+                for (envelope, (value, _)) in envelope.iter_mut().zip(values) {
+                    *envelope *= value;
+                }
+            }
+        }
+        match phased {
+            None => vec![envelope],
+            Some((mut sine, mut cosine)) => {
+                for ((sine, cosine), envelope) in sine.iter_mut().zip(&mut cosine).zip(&envelope) {
+                    *sine *= envelope;
+                    *cosine *= envelope;
+                }
+                vec![sine, cosine]
+            }
+        }
+    }
+
+    /// Its free constants: which factor, and which constant of it.
+    pub fn free(&self) -> Vec<(usize, Free)> {
+        let of = |(index, factor): (usize, &Factor)| {
+            factor.shape.free().iter().map(move |free| (index, *free)).collect::<Vec<_>>()
+        };
+        self.factors.iter().enumerate().flat_map(of).collect()
+    }
+
+    /// What it costs to write it down.
+    pub fn complexity(&self) -> usize {
+        1 + self.factors.iter().map(Factor::complexity).sum::<usize>()
+    }
+
+    /// What it is, without its constants.
+    pub fn family(&self) -> Vec<(usize, String)> {
+        let mut family: Vec<_> = self.factors.iter().map(Factor::family).collect();
+        family.sort();
+        family
+    }
+
+    /// Whether it is a plain or modulated wave.
+    pub fn is_wave(&self) -> bool {
+        self.factors.iter().any(|factor| factor.shape == Shape::Wave)
+    }
+}

@@ -1,0 +1,184 @@
+//! What a law says of runs that it was not fitted to.
+//!
+//! Each fold of whole runs is left out in turn; amplitudes, nuisances and the constants inside the law are estimated again
+//! on the others, the constants along their derivatives. The error of the fold is the deviance of its rows under what
+//! the others predict, nuisances uncertain as they then are:
+//! eᵀ(σ²(1 + X A⁻¹ Xᵀ))⁻¹e + ln|1 + X A⁻¹ Xᵀ|, with A the information of the others and e = y − X β.
+//! Source: Bishop, *Pattern Recognition and Machine Learning* (2006), section 3.3.2.
+
+use crate::polish::Polished;
+use crate::problem::Bench;
+use crate::vector::dot;
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+/// Folds of the rows that are fitted.
+pub(crate) struct Judge {
+    folds: Vec<Vec<Range<usize>>>,
+    nuisances: Vec<Vec<f64>>,
+    precisions: Vec<f64>,
+    residual: Vec<f64>,
+}
+
+/// What validation says of a law.
+#[derive(Clone, Debug)]
+pub(crate) struct Verdict {
+    /// Squared error of each fold, and what the uncertainty of its prediction adds to its deviance.
+    pub folds: Vec<(f64, f64)>,
+    /// Covariance of amplitudes and inner constants, for noise of variance 1.
+    pub covariance: DMatrix<f64>,
+    /// Squared error on runs that were never fitted.
+    pub unseen: Option<f64>,
+}
+
+/// At most so many folds.
+const MOST_FOLDS: usize = 10;
+/// With fewer runs a fold is a stretch of rows.
+const FEWEST_RUNS: usize = 3;
+/// So many stretches.
+const STRETCHES: usize = 6;
+/// Prior standard deviation of an inner constant around its estimate, in natural logarithms, cycles or spreads.
+const INNER_SD: f64 = 1.0;
+/// Share of its own information that is added to an amplitude's, so that the system has a solution.
+const RIDGE: f64 = 1e-9;
+
+impl Judge {
+    pub fn new(bench: &Bench) -> Self {
+        let runs = bench.fitted.len();
+        let mut folds = Vec::new();
+        if runs < FEWEST_RUNS {
+            let edge = |piece: usize| bench.rows * piece / STRETCHES;
+            folds.extend((0..STRETCHES).map(|piece| std::iter::once(edge(piece)..edge(piece + 1)).collect()));
+        } else {
+            folds.resize(runs.min(MOST_FOLDS), Vec::new());
+            let mut begin = 0;
+            for (index, (_, rows)) in bench.fitted.iter().enumerate() {
+                folds[index % runs.min(MOST_FOLDS)].push(begin..begin + rows);
+                begin += rows;
+            }
+        }
+        let (nuisances, precisions) = bench.nuisance_columns();
+        Self { folds, nuisances, precisions, residual: bench.residual_rows() }
+    }
+
+    /// Validates a law; none where its system has no solution.
+    pub fn judge(&self, bench: &Bench, law: &Polished) -> Option<Verdict> {
+        let columns: Vec<Vec<f64>> = law.terms.iter().flat_map(|term| bench.raw_columns(term)).collect();
+        let slopes = law.slopes(bench);
+        let own = columns.len();
+        let size = |column: &Vec<f64>| dot(column, column).sqrt().max(f64::MIN_POSITIVE);
+        let sizes: Vec<f64> = columns.iter().map(size).collect();
+        let all: Vec<&[f64]> =
+            self.nuisances.iter().chain(&columns).chain(&slopes).map(Vec::as_slice).collect();
+        let scale: Vec<f64> = std::iter::repeat_n(1.0, self.nuisances.len())
+            .chain(sizes.iter().map(|size| size.recip()))
+            .chain(std::iter::repeat_n(1.0, slopes.len()))
+            .collect();
+        let grams: Vec<Gram> =
+            self.folds.iter().map(|fold| Gram::of(&all, &scale, &self.residual, fold)).collect();
+        let mut prior = DMatrix::zeros(all.len(), all.len());
+        let precisions = self.precisions.iter().copied();
+        let inner = std::iter::repeat_n(INNER_SD.powi(-2), slopes.len());
+        for (index, value) in precisions.chain(std::iter::repeat_n(RIDGE, own)).chain(inner).enumerate() {
+            prior[(index, index)] = value;
+        }
+        let mut total = Gram { matrix: prior, vector: DVector::zeros(all.len()), scalar: 0.0 };
+        for gram in &grams {
+            total.add(gram, 1.0);
+        }
+        let whole = total.matrix.clone().cholesky()?;
+        let mut folds = Vec::with_capacity(grams.len());
+        for gram in &grams {
+            let mut others = total.clone();
+            others.add(gram, -1.0);
+            let trained = others.matrix.clone().cholesky()?;
+            let estimate = trained.solve(&others.vector);
+            folds.push((
+                gram.error(&estimate, |error| whole.solve(error)),
+                log_determinant(&whole) - log_determinant(&trained),
+            ));
+        }
+        let estimate = whole.solve(&total.vector);
+        let unseen = self.unseen(bench, law, &scale, &total, &estimate);
+        let first = self.nuisances.len();
+        let count = all.len() - first;
+        let covariance = whole.inverse();
+        let covariance = DMatrix::from_fn(count, count, |row, column| {
+            covariance[(first + row, first + column)] * scale[first + row] * scale[first + column]
+        });
+        Some(Verdict { folds, covariance, unseen })
+    }
+
+    fn unseen(
+        &self,
+        bench: &Bench,
+        law: &Polished,
+        scale: &[f64],
+        total: &Gram,
+        estimate: &DVector<f64>,
+    ) -> Option<f64> {
+        let mut sum = None;
+        // The constants inside stay as they are: their derivatives are left out.
+        let used = self.nuisances.len() + law.amplitudes.len();
+        for run in &bench.unseen {
+            let residual = bench.residual_rows_of(*run);
+            let rows = |samples: Vec<f64>| bench.rows_of(*run, &samples);
+            let own: Vec<Vec<f64>> =
+                law.terms.iter().flat_map(|term| term.samples(&bench.variables, *run)).map(rows).collect();
+            let mut all = bench.nuisance_rows_of(*run);
+            all.extend(own.iter().map(Vec::as_slice));
+            let gram = Gram::of(&all, &scale[..used], residual, &vec![0..residual.len(); 1]);
+            let known = total.matrix.view((0, 0), (used, used)) + &gram.matrix;
+            let Some(known) = known.cholesky() else { continue };
+            *sum.get_or_insert(0.0) +=
+                gram.error(&estimate.rows(0, used).into_owned(), |error| known.solve(error));
+        }
+        sum
+    }
+}
+
+fn log_determinant(cholesky: &nalgebra::Cholesky<f64, nalgebra::Dyn>) -> f64 {
+    2.0 * cholesky.l_dirty().diagonal().iter().map(|value| value.ln()).sum::<f64>()
+}
+
+/// Products of columns and residual over some rows.
+#[derive(Clone)]
+struct Gram {
+    matrix: DMatrix<f64>,
+    vector: DVector<f64>,
+    scalar: f64,
+}
+
+impl Gram {
+    fn of(columns: &[&[f64]], scale: &[f64], residual: &[f64], rows: &[Range<usize>]) -> Self {
+        let product = |one: &[f64], other: &[f64]| {
+            rows.iter().map(|rows| dot(&one[rows.clone()], &other[rows.clone()])).sum::<f64>()
+        };
+        let count = columns.len();
+        let mut matrix = DMatrix::zeros(count, count);
+        for row in 0..count {
+            for column in 0..=row {
+                let value = product(columns[row], columns[column]) * scale[row] * scale[column];
+                (matrix[(row, column)], matrix[(column, row)]) = (value, value);
+            }
+        }
+        let vector = DVector::from_iterator(
+            count,
+            columns.iter().zip(scale).map(|(one, scale)| scale * product(one, residual)),
+        );
+        Self { matrix, vector, scalar: product(residual, residual) }
+    }
+
+    fn add(&mut self, other: &Self, sign: f64) {
+        self.matrix += sign * &other.matrix;
+        self.vector += sign * &other.vector;
+        self.scalar += sign * other.scalar;
+    }
+
+    /// Squared error of an estimate on these rows, once it may still move as far as it is uncertain.
+    fn error(&self, estimate: &DVector<f64>, solve: impl Fn(&DVector<f64>) -> DVector<f64>) -> f64 {
+        let along = &self.vector - &self.matrix * estimate;
+        let plain = self.scalar - estimate.dot(&self.vector) - estimate.dot(&along);
+        (plain - along.dot(&solve(&along))).max(0.0)
+    }
+}

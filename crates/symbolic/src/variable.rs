@@ -1,0 +1,220 @@
+//! What may stand in a law, and in which unit.
+//!
+//! The names are those that the effect `expression` knows, and no others: what is made of the target itself (a measured
+//! force, an acceleration) would reproduce the residual as an identity and is refused by its name.
+
+use crate::SymbolicError;
+use headland_units::parse_unit;
+
+/// A quantity that may stand in a law, sample by sample.
+#[derive(Clone, Debug)]
+pub struct Variable {
+    /// Its name in a formula: `v`, `x`, `t`, ...
+    pub name: String,
+    /// Its unit; the samples are in SI units (°C for temperatures).
+    pub unit: String,
+    /// Samples of every run.
+    pub runs: Vec<Vec<f64>>,
+}
+
+/// How a variable may enter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// From nothing upwards: a speed.
+    Size,
+    /// Along which things change, begin, end and repeat: position, time.
+    Coordinate,
+    /// Whose zero is a convention: temperature, elevation.
+    Level,
+    /// Of either sign, with a zero that means something.
+    Signed,
+    /// A direction.
+    Angle,
+    /// A property of vehicle or world that a force may be proportional to.
+    Weight,
+    /// 0 or 1.
+    Gate,
+}
+
+/// A name that formulas know.
+#[derive(Debug)]
+pub(crate) struct Known {
+    pub name: &'static str,
+    pub unit: &'static str,
+    /// Ending of the name of a constant that is a value of it.
+    pub value_ending: &'static str,
+    /// Ending of the name of a constant that is a difference of values.
+    pub scale_ending: &'static str,
+    pub kind: Kind,
+}
+
+const fn known(name: &'static str, unit: &'static str, ending: &'static str, kind: Kind) -> Known {
+    Known { name, unit, value_ending: ending, scale_ending: ending, kind }
+}
+
+/// Everything that may stand in a law.
+pub(crate) const KNOWN: [Known; 17] = [
+    known("v", "m/s", "_m_s", Kind::Size),
+    known("x", "m", "_m", Kind::Coordinate),
+    known("t", "s", "_s", Kind::Coordinate),
+    known("heading", "rad", "_rad", Kind::Angle),
+    known("kappa", "1/m", "_per_m", Kind::Signed),
+    known("slope", "1", "", Kind::Signed),
+    known("elevation", "m", "_m", Kind::Level),
+    Known { name: "temperature", unit: "°C", value_ending: "_c", scale_ending: "_k", kind: Kind::Level },
+    known("m", "kg", "_kg", Kind::Weight),
+    known("g", "m/s²", "_m_s2", Kind::Weight),
+    known("N", "N", "_n", Kind::Weight),
+    known("rho", "kg/m³", "_kg_m3", Kind::Weight),
+    known("area", "m²", "_m2", Kind::Weight),
+    known("coasting", "1", "", Kind::Gate),
+    known("braking", "1", "", Kind::Gate),
+    known("headwind", "m/s", "_m_s", Kind::Signed),
+    known("crosswind", "m/s", "_m_s", Kind::Signed),
+];
+
+/// A variable, checked, with what the search has to know of its values.
+#[derive(Debug)]
+pub(crate) struct Checked<'a> {
+    pub known: &'static Known,
+    pub runs: &'a [Vec<f64>],
+    /// Least and greatest value in the runs that are fitted.
+    pub low: f64,
+    pub high: f64,
+    /// Whether any value is negative.
+    pub negative: bool,
+    /// Median of the absolute steps between samples that are not zero.
+    pub step: f64,
+}
+
+impl Checked<'_> {
+    /// How far its values reach.
+    pub fn spread(&self) -> f64 {
+        self.high - self.low
+    }
+
+    /// Its greatest absolute value.
+    pub fn size(&self) -> f64 {
+        self.high.abs().max(self.low.abs())
+    }
+
+    /// A round number of its size: 1, 2 or 5 times a power of ten, for powers, whose scale is free to choose.
+    pub fn round_size(&self) -> f64 {
+        let power = 10f64.powf(self.size().log10().floor());
+        let digit = self.size() / power;
+        power
+            * if digit < 1.5 {
+                1.0
+            } else if digit < 3.5 {
+                2.0
+            } else if digit < 7.5 {
+                5.0
+            } else {
+                10.0
+            }
+    }
+}
+
+/// Checks names, units and values; variables that never change are left out, a constant has their place.
+pub(crate) fn check<'a>(variables: &'a [Variable], fit: &[bool]) -> Result<Vec<Checked<'a>>, SymbolicError> {
+    /// A smaller share of the greatest value is rounding.
+    const LEAST_SPREAD: f64 = 1e-9;
+    let mut all: Vec<Checked<'a>> = Vec::new();
+    let mut names: Vec<&str> = Vec::new();
+    for variable in variables {
+        let name = variable.name.as_str();
+        let Some(known) = KNOWN.iter().find(|known| known.name == name) else {
+            let known = KNOWN.iter().map(|known| known.name).collect();
+            return Err(SymbolicError::Unknown { name: name.to_owned(), known });
+        };
+        if names.contains(&name) {
+            return Err(SymbolicError::Twice { name: name.to_owned() });
+        }
+        names.push(name);
+        let (found, expected) = (parse_unit(&variable.unit), parse_unit(known.unit));
+        // Same size as well: samples are SI numbers, and no conversion is made here.
+        let fits = found.as_ref().ok().zip(expected.as_ref().ok()).is_some_and(|(found, expected)| {
+            found.dimension == expected.dimension
+                && found.factor == expected.factor
+                && found.offset == expected.offset
+        });
+        if !fits {
+            return Err(SymbolicError::Unit {
+                name: name.to_owned(),
+                found: variable.unit.clone(),
+                expected: known.unit.to_owned(),
+            });
+        }
+        for (run, values) in variable.runs.iter().enumerate() {
+            if !values.iter().all(|value| value.is_finite()) {
+                return Err(SymbolicError::NotFinite { what: format!("`{name}`"), run });
+            }
+        }
+        let fitted = || variable.runs.iter().zip(fit).filter(|(_, fit)| **fit).map(|(values, _)| values);
+        let (low, high) =
+            fitted().flatten().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                (low.min(*value), high.max(*value))
+            });
+        let mut steps: Vec<f64> = fitted()
+            .flat_map(|values| values.windows(2).map(|pair| (pair[1] - pair[0]).abs()))
+            .filter(|step| *step > 0.0)
+            .collect();
+        steps.sort_by(f64::total_cmp);
+        let step = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
+        let negative = variable.runs.iter().flatten().any(|value| *value < 0.0);
+        let checked = Checked { known, runs: &variable.runs, low, high, negative, step };
+        if checked.spread() > LEAST_SPREAD * checked.size() {
+            all.push(checked);
+        }
+    }
+    Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn variable(name: &str, unit: &str) -> Variable {
+        Variable { name: name.to_owned(), unit: unit.to_owned(), runs: vec![vec![0.0, 1.0, 3.0]] }
+    }
+
+    #[test]
+    fn endings_stand_for_the_units_of_their_variables() {
+        for known in &KNOWN {
+            let wanted = parse_unit(known.unit).unwrap();
+            for ending in [known.value_ending, known.scale_ending] {
+                let unit = headland_units::unit_of_name(&format!("q1{ending}"));
+                match unit {
+                    Some(unit) => assert!(unit.dimension == wanted.dimension && unit.to_si(1.0) == 1.0),
+                    None => assert_eq!(wanted.dimension, headland_units::Dimension::NONE, "{known:?}"),
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_made_of_the_target_is_refused() {
+        for name in ["a", "force", "dv_dt", "tractive_force_n", "acceleration"] {
+            let error = check(&[variable(name, "N")], &[true]).unwrap_err();
+            assert!(matches!(error, SymbolicError::Unknown { .. }), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_unit_that_does_not_fit_is_refused() {
+        for (name, unit) in [("v", "kg"), ("v", "km/h"), ("x", "s"), ("temperature", "K"), ("t", "furlong")] {
+            let error = check(&[variable(name, unit)], &[true]).unwrap_err();
+            assert!(matches!(error, SymbolicError::Unit { .. }), "{error}");
+        }
+        assert!(check(&[variable("v", "m/s"), variable("v", "m/s")], &[true]).is_err());
+    }
+
+    #[test]
+    fn what_never_changes_is_left_out() {
+        let still = Variable { runs: vec![vec![4.0; 3]], ..variable("m", "kg") };
+        let all = [still, variable("v", "m/s")];
+        let checked = check(&all, &[true]).unwrap();
+        assert_eq!(checked.len(), 1);
+        assert!((checked[0].round_size() - 2.0).abs() < 1e-12 && checked[0].step > 0.0);
+    }
+}

@@ -1,0 +1,103 @@
+//! Laws that somebody made up are found again, and nothing is found where nothing is.
+
+use crate::plant::{At, Plant};
+use headland_symbolic::{Found, Options, find};
+use std::f64::consts::TAU;
+
+/// Fewer draws than the default: the tests look at laws far from the threshold.
+pub fn options() -> Options {
+    Options { draws: 40, ..Options::default() }
+}
+
+/// What is found, and its R² on runs that were held out.
+fn found(seed: u64, sd_n: f64, law: impl Fn(&At) -> f64) -> (Found, f64) {
+    let plant = Plant::new(seed, 10, sd_n);
+    let made = plant.problem(seed, &law);
+    let found = find(&made.problem(), &options(), &|| false).unwrap();
+    let r2 = found.law().map_or(0.0, |one| plant.held_out_r2(&made, &law, &one.prediction));
+    (found, r2)
+}
+
+fn constant(found: &Found, name: &str) -> (f64, f64) {
+    let law = found.law().unwrap();
+    let one = law.constants.iter().find(|one| one.name == name);
+    let one = one.unwrap_or_else(|| panic!("`{name}` is not in {} {:?}", law.text, law.constants));
+    (one.value, one.sd.unwrap_or(0.0))
+}
+
+/// Within four standard deviations, and those within a tenth.
+fn close((value, sd): (f64, f64), truth: f64) {
+    assert!((value - truth).abs() < 4.0 * sd && sd < 0.1 * truth, "{value} ± {sd}, and it was {truth}");
+}
+
+#[test]
+fn a_wave_over_the_way_is_found_with_its_length_off_any_grid() {
+    let (found, r2) = found(1, 150.0, |at| 310.0 * (TAU * at.x / 13.37 + 0.7).sin());
+    assert!(r2 > 0.98, "{r2}");
+    close(constant(&found, "x1_m"), 13.37);
+    close(constant(&found, "a1_n"), 310.0);
+    close(constant(&found, "phase1_rad"), 0.7);
+}
+
+#[test]
+fn a_decay_over_time_is_found_with_its_constant() {
+    let (found, r2) = found(2, 100.0, |at| 800.0 * (-at.t / 6.3).exp());
+    assert!(r2 > 0.98, "{r2}");
+    close(constant(&found, "t1_s"), 6.3);
+}
+
+#[test]
+fn a_product_of_two_variables_is_found() {
+    let (found, r2) = found(3, 100.0, |at| 50.0 * at.v * (at.heading - 0.9).cos());
+    let law = found.law().unwrap();
+    assert!(r2 > 0.95 && law.names("v") && law.names("heading") && law.terms == 1, "{r2} {}", law.text);
+}
+
+#[test]
+fn a_law_of_two_terms_is_found() {
+    let law = |at: &At| {
+        500.0 * (-((at.x - 120.0) / 18.0_f64).powi(2)).exp() + at.coasting * 160.0 * (at.v - 4.5).max(0.0)
+    };
+    let (found, r2) = found(4, 100.0, law);
+    let law = found.law().unwrap();
+    assert!(r2 > 0.95 && law.names("x") && law.names("coasting") && law.terms == 2, "{r2} {}", law.text);
+    assert_eq!(found.chance.terms, 2, "{:?}", found.chance);
+}
+
+#[test]
+fn a_wave_that_fades_is_found() {
+    let (found, r2) = found(5, 100.0, |at| 600.0 * (TAU * at.t / 4.21).cos() * (-at.t / 14.0).exp());
+    let law = found.law().unwrap();
+    assert!(r2 > 0.95 && law.names("t") && law.names("sin"), "{r2} {}", law.text);
+}
+
+/// The second nuisance of the plant is a force along v²: 2 N s²/m² are half of its standard deviation.
+#[test]
+fn what_a_free_parameter_can_imitate_earns_nothing() {
+    let (found, _) = found(6, 100.0, |at| 2.0 * at.v * at.v);
+    assert!(found.law().is_none(), "{:?}", found.law().map(|law| &law.text));
+}
+
+/// With a significance of one in a hundred, two of twenty happen once in sixty such tests; the seeds are fixed. The example
+/// `recovered` counts over more.
+#[test]
+fn nothing_is_found_in_noise() {
+    let claimed = (0..20)
+        .filter(|seed| {
+            let made = Plant::new(500 + seed, 4, 100.0).problem(900 + seed, |_| 0.0);
+            find(&made.problem(), &options(), &|| false).unwrap().law().is_some()
+        })
+        .count();
+    assert!(claimed <= 1, "{claimed} of 20");
+}
+
+#[test]
+fn the_front_falls_in_error_as_it_grows_in_complexity() {
+    let (found, _) = found(2, 100.0, |at| 800.0 * (-at.t / 6.3).exp());
+    assert!(found.front.len() > 1 && found.front[0].complexity == 0 && found.front[0].error == 0.0);
+    for pair in found.front.windows(2) {
+        assert!(pair[0].complexity < pair[1].complexity && pair[0].error > pair[1].error);
+    }
+    let law = found.law().unwrap();
+    assert!(law.explained > 0.3 && law.unseen.unwrap() > 0.3, "{law:?}");
+}

@@ -43,19 +43,23 @@ class Case:
             for name in rows[0]
             if name not in ("run", "held_out")
         }
-        self.hidden = columns["hidden"]
         self.fit, self.held = ~held, held
         noise = max(self.about["noise"], 1e-9)
         free = [values for name, values in columns.items() if name.startswith("free:")]
         self.y = columns["residual"] - calibrated(columns["residual"], free, self.fit, noise)
+        # What the free parameters take of the hidden force no program sees, so that it is not asked for.
+        self.hidden = columns["hidden"] - calibrated(columns["hidden"], free, self.fit, noise)
         self.names, self.x = [], []
         for name, values in columns.items():
             spread = np.std(values[self.fit])
             if name in NOT_A_CHANNEL or name.startswith("free:") or spread < 1e-9 * (1 + abs(values).max()):
                 continue
+            # One of two that say the same, such as both components of a heading that is this or the opposite.
+            if any(abs(np.corrcoef(values[self.fit], other[self.fit])[0, 1]) > 0.999 for other in self.x):
+                continue
             self.names.append(name)
             self.x.append(values / np.abs(values[self.fit]).max())
-        self.x = np.array(self.x).T
+        self.x, self.all_names = np.array(self.x).T, list(self.names)
         self.scale = np.std(self.y[self.fit]) or 1.0
 
     def without(self, channel):
@@ -103,7 +107,7 @@ def sindy(case):
     thresholds = np.geomspace(0.003, 3.0, 10)
 
     def solve(rows, threshold):
-        optimizer = pysindy.STLSQ(threshold=threshold, alpha=1e-4, max_iter=30)
+        optimizer = pysindy.STLSQ(threshold=threshold, alpha=1e-3 * rows.sum(), max_iter=30)
         optimizer.fit(theta[rows], y[rows, None])
         return np.asarray(optimizer.coef_)[0]
 
@@ -171,7 +175,7 @@ def judge(case, found, used):
     result = {"varies": float(np.std(found[case.fit])) > 0.1 * about["noise"], "r2": None, "right": False}
     if hidden and np.any(case.hidden):
         result["r2"] = r2(found[case.held], case.hidden[case.held]) if case.held.any() else None
-        wanted = set().union(*(one["variables"] for one in hidden))
+        wanted = set().union(*(one["variables"] for one in hidden)) & set(case.all_names)
         result["variables"] = used == wanted
         result["right"] = bool(result["variables"] and result["r2"] is not None and result["r2"] >= 0.9)
     return result
@@ -181,7 +185,7 @@ def table(results, programs):
     """The page."""
     lines = [
         "# Others on the same concealed cases\n",
-        "Made by `benches/peers/residual_identification.py` from `conceal table`; see `benches/peers/README.md` for what is given and counted.\n",
+        f"{len(results)} cases. Made by `benches/peers/residual_identification.py` from `conceal table`; see `benches/peers/README.md` for what is given and counted.\n",
         "| what | " + " | ".join(programs) + " |",
         "|---|" + "---|" * len(programs),
     ]
@@ -264,10 +268,10 @@ def main():
             }
             print(path.stem, about["kind"], hidden, name, one[name]["r2"], text[:100], flush=True)
         results.append(one)
-    page = table(results, list(programs))
-    if arguments.markdown:
-        arguments.markdown.write_text(page)
-    print(page)
+        if arguments.markdown:
+            # After each case, so that an interrupted comparison is not lost.
+            arguments.markdown.write_text(table(results, list(programs)))
+    print(table(results, list(programs)))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 //! What the best of all terms reaches where there is nothing to find.
 //!
-//! Residuals of white noise go through the same screening. Statistic: n g / (S − g), with g the growth of the explained
+//! Residuals of noise go through the same screening: white, or as persistent from row to row as what the law with that term leaves,
+//! where the caller's whitening was not perfect. Statistic: n g / (S − g), with g the growth of the explained
 //! sum of squares and S what was left; the scale of the noise cancels. The best of many follows Gumbel's law
 //! p = 1 − exp(−exp(−(z − μ)/β)), whose μ and β come from the mean and the standard deviation of the draws.
 //! Source: Gumbel, *Statistics of Extremes* (1958); the test of the largest step is that of forward selection with the
@@ -16,12 +17,15 @@ use std::f64::consts::{PI, TAU};
 /// How the terms of a law compare with the best of chance.
 #[derive(Clone, Debug)]
 pub struct Chance {
-    /// Statistics of the best term where there is nothing to find, in ascending order.
+    /// Statistics of the best term in white noise, in ascending order.
     pub draws: Vec<f64>,
     /// Statistic of the best first, second, ... term, each beside the best law of the terms before it.
     pub steps: Vec<f64>,
     /// How probable it is that chance alone makes such a step or a larger one.
     pub p_values: Vec<f64>,
+    /// Correlation of neighbouring rows in the draws that each step was held against: 0 where what the best law with that
+    /// step leaves is white.
+    pub persistence: Vec<f64>,
     /// How many terms, from the first on, are all less probable than the significance that was asked for.
     pub terms: usize,
 }
@@ -38,10 +42,14 @@ pub(crate) struct Null {
 const EULER: f64 = 0.577_215_664_901_532_9;
 
 impl Null {
-    /// The best of all terms for so many residuals of white noise.
-    pub fn new(bench: &Bench, screen: &Screen, draws: usize, seed: u64) -> Self {
+    /// The best of all terms for so many residuals of noise.
+    pub fn new(bench: &Bench, screen: &Screen, draws: usize, seed: u64, persistence: f64) -> Self {
         let residuals: Vec<Vec<f64>> = (0..draws as u64)
-            .map(|stream| screen.thin(bench, &bench.project(&white(bench.rows, seed, stream))))
+            .map(|stream| {
+                let mut rows = white(bench.rows, seed, stream);
+                persist(bench, &mut rows, persistence);
+                screen.thin(bench, &bench.project(&rows))
+            })
             .collect();
         let best = screen.best_gains(&residuals);
         let mut draws: Vec<f64> = best
@@ -67,6 +75,46 @@ impl Null {
 /// Growth of the explained sum of squares in units of the noise that is left beside it.
 pub(crate) fn statistic(gain: f64, cost: f64, rows: usize) -> f64 {
     rows as f64 * gain / (cost - gain).max(f64::MIN_POSITIVE)
+}
+
+/// Makes white rows persistent, each run from its own start: a first-order autoregressive process of variance 1.
+fn persist(bench: &Bench, rows: &mut [f64], persistence: f64) {
+    let fresh = (1.0 - persistence * persistence).sqrt();
+    let mut begin = 0;
+    for (_, count) in &bench.fitted {
+        for at in begin + 1..begin + count {
+            rows[at] = persistence * rows[at - 1] + fresh * rows[at];
+        }
+        begin += count;
+    }
+}
+
+/// Correlation of neighbouring rows of the first-order process that is as strong at low frequency as these rows,
+/// (1 + φ)/(1 − φ) = 1 + 2 Σ ρ, summed as long as ρ is more than white rows have by chance; 0 where none is.
+pub(crate) fn persistence(bench: &Bench, rows: &[f64]) -> f64 {
+    /// Standard deviations of ρ, which is 1/√n for white rows (Bartlett, *J. R. Stat. Soc.* Suppl. 8, 1946).
+    const SURE: f64 = 2.0;
+    /// Beyond it draws are no noise any more.
+    const MOST: f64 = 0.95;
+    /// Lags that are looked at.
+    const LAGS: usize = 30;
+    let own = dot(&rows[..bench.rows], &rows[..bench.rows]).max(f64::MIN_POSITIVE);
+    let correlation = |lag: usize| {
+        let (mut sum, mut begin) = (0.0, 0);
+        for (_, count) in &bench.fitted {
+            let run = &rows[begin..begin + count];
+            sum += dot(&run[..count.saturating_sub(lag)], &run[lag.min(*count)..]);
+            begin += count;
+        }
+        sum / own
+    };
+    let sure = SURE / (bench.rows as f64).sqrt();
+    let first = correlation(1);
+    if first < -sure {
+        return first.max(-MOST);
+    }
+    let sum: f64 = (1..=LAGS).map(correlation).take_while(|one| *one > sure).sum();
+    (sum / (1.0 + sum)).min(MOST)
 }
 
 /// Standard normal numbers, by the method of Box and Muller (*Ann. Math. Statist.* 29, 1958).

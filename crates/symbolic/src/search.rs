@@ -4,7 +4,7 @@
 //! The amount of work is fixed by the options and the size of the data, never by a clock, so that results repeat.
 
 use crate::SymbolicError;
-use crate::chance::{Chance, Null, statistic};
+use crate::chance::{Chance, Null, persistence, statistic};
 use crate::dictionary::{dictionary, envelopes};
 use crate::polish::{Polished, amplitudes, polish};
 use crate::problem::Bench;
@@ -59,27 +59,40 @@ pub(crate) type Stop<'a> = &'a (dyn Fn() -> bool + Sync);
 /// Searches.
 pub(crate) fn search(bench: &Bench, options: &Options, stop: Stop) -> Result<Searched, SymbolicError> {
     let screen = Screen::new(bench, dictionary(&bench.variables), stop)?;
-    let null = Null::new(bench, &screen, options.draws, options.seed);
+    let chances = |persistence| Null::new(bench, &screen, options.draws, options.seed, persistence);
+    let null = chances(0.0);
     let hunt = Hunt { bench, screen: &screen, stop };
     let nothing = Polished::nothing(bench);
     let mut laws = vec![nothing.clone()];
     let mut beam = vec![nothing];
-    let mut chance = Chance { draws: null.draws.clone(), steps: Vec::new(), p_values: Vec::new(), terms: 0 };
+    let mut chance = Chance {
+        draws: null.draws.clone(),
+        steps: Vec::new(),
+        p_values: Vec::new(),
+        persistence: Vec::new(),
+        terms: 0,
+    };
     for level in 0..options.most_terms {
         if stop() {
             return Err(SymbolicError::Interrupted);
         }
         let families = FAMILIES.get(level).copied().unwrap_or(FAMILIES[2]);
         let (mut found, step) = hunt.grow(&beam, families, PEAKS[level.min(1)])?;
-        let p_value = null.p_value(step);
-        chance.steps.push(step);
-        chance.p_values.push(p_value);
         hunt.sort(&mut found);
         if level > 0 {
             let more = hunt.exchange(&found[..found.len().min(EXCHANGED)])?;
             found.extend(more);
             hunt.sort(&mut found);
         }
+        // Rows that the whitening left persistent make larger steps by chance.
+        let left = found.first().map_or(0.0, |law| persistence(bench, &law.left));
+        let mut p_value = null.p_value(step);
+        if left != 0.0 && p_value <= options.significance {
+            p_value = p_value.max(chances(left).p_value(step));
+        }
+        chance.steps.push(step);
+        chance.p_values.push(p_value);
+        chance.persistence.push(left);
         beam = found.iter().take(BEAM).cloned().collect();
         laws.extend(found.into_iter().take(VALIDATED));
         if p_value > options.significance || beam.is_empty() {

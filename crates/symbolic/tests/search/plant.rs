@@ -48,6 +48,8 @@ const DT_S: f64 = 0.02;
 pub struct Plant {
     pub runs: Vec<Vec<At>>,
     pub sd_n: f64,
+    /// Correlation of the noise of neighbouring rows; the whitening takes it for [`PERSISTENCE`].
+    pub persistence: f64,
 }
 
 /// Hat-weighted means over two blocks, and a correlation between neighbours that is taken out.
@@ -135,7 +137,7 @@ impl Plant {
                     .collect()
             })
             .collect();
-        Self { runs, sd_n }
+        Self { runs, sd_n, persistence: PERSISTENCE }
     }
 
     /// The problem of a law [N]: noise, a residual that nuisances have a part in, three runs of ten held out.
@@ -175,8 +177,8 @@ impl Plant {
                 let mut noise = self.sd_n * dice.normal();
                 for row in &mut rows {
                     *row += noise;
-                    let fresh = self.sd_n * (1.0 - PERSISTENCE * PERSISTENCE).sqrt();
-                    noise = PERSISTENCE * noise + fresh * dice.normal();
+                    let fresh = self.sd_n * (1.0 - self.persistence.powi(2)).sqrt();
+                    noise = self.persistence * noise + fresh * dice.normal();
                 }
                 weak.whiten(&rows)
             })

@@ -91,6 +91,19 @@ fn nothing_is_found_in_noise() {
     assert!(claimed <= 1, "{claimed} of 20");
 }
 
+/// The whitening takes neighbouring rows for correlated by 0.3, and they are by 0.7: waves and bumps appear by chance.
+#[test]
+fn noise_that_was_not_whitened_well_is_no_law() {
+    let (mut claimed, mut persistent) = (0, 0);
+    for seed in 0..6 {
+        let plant = Plant { persistence: 0.7, ..Plant::new(700 + seed, 4, 100.0) };
+        let found = find(&plant.problem(seed, |_| 0.0).problem(), &options(), &|| false).unwrap();
+        claimed += usize::from(found.law().is_some());
+        persistent += usize::from(found.chance.persistence[0] > 0.3);
+    }
+    assert!(claimed <= 1 && persistent == 6, "{claimed} {persistent} of 6");
+}
+
 #[test]
 fn the_front_falls_in_error_as_it_grows_in_complexity() {
     let (found, _) = found(2, 100.0, |at| 800.0 * (-at.t / 6.3).exp());

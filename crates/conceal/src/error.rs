@@ -33,6 +33,14 @@ pub enum ConcealError {
         /// Why.
         source: std::io::Error,
     },
+    /// A log lacks a column.
+    #[error("{}: no column that begins with `{column}`", path.display())]
+    Column {
+        /// The log.
+        path: PathBuf,
+        /// How its header begins.
+        column: String,
+    },
     /// There is no case to score.
     #[error("{} holds no case: expected folders with `truth.json`", folder.display())]
     NoCase {

@@ -33,6 +33,7 @@ pub mod family;
 pub mod hidden;
 mod plan;
 pub mod plant;
+pub mod real;
 pub mod score;
 mod sensor;
 pub mod table;

@@ -1,9 +1,9 @@
 //! The program `conceal`: makes concealed cases, and scores a diagnosis on them.
 
 use clap::{Parser, Subcommand};
-use headland_conceal::{ConcealError, Probe, generate, score};
+use headland_conceal::{ConcealError, Probe, generate, real, score};
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Debug, Parser)]
@@ -74,6 +74,30 @@ enum Task {
         #[arg(long)]
         markdown: Option<PathBuf>,
     },
+    /// Diagnose recordings of real vehicles, and hold the answers against the channels that were withheld
+    Real {
+        /// The program under test
+        #[arg(long, default_value = "target/release/headland")]
+        program: PathBuf,
+        /// The recordings [default: what HEADLAND_RECORDINGS names, else ../shared/recordings]
+        #[arg(long)]
+        recordings: Option<PathBuf>,
+        /// The scenarios of the project
+        #[arg(long, default_value = "scenarios")]
+        scenarios: PathBuf,
+        /// The one set of recordings to do
+        #[arg(long)]
+        only: Option<String>,
+        /// Longest time for one diagnosis, in seconds
+        #[arg(long, default_value_t = 1800.0)]
+        limit_s: f64,
+        /// Where inputs and answers are put
+        #[arg(long, default_value = "out/real")]
+        scratch: PathBuf,
+        /// The table, as Markdown
+        #[arg(long)]
+        markdown: Option<PathBuf>,
+    },
 }
 
 fn main() -> ExitCode {
@@ -130,6 +154,36 @@ fn run(arguments: Arguments) -> Result<(), ConcealError> {
             }
             let _ = writeln!(out, "{page}");
         }
+        Task::Real { program, recordings, scenarios, only, limit_s, scratch, markdown } => {
+            let named = || std::env::var_os("HEADLAND_RECORDINGS").map(PathBuf::from);
+            let recordings = recordings.or_else(named).unwrap_or_else(|| "../shared/recordings".into());
+            prove(&real::Options { program, recordings, scenarios, scratch, only, limit_s }, markdown)?;
+        }
     }
+    Ok(())
+}
+
+fn prove(options: &real::Options, markdown: Option<PathBuf>) -> Result<(), ConcealError> {
+    let absolute = |path: &Path| {
+        std::path::absolute(path).map_err(|source| ConcealError::File { path: path.to_owned(), source })
+    };
+    let options = real::Options {
+        recordings: absolute(&options.recordings)?,
+        scenarios: absolute(&options.scenarios)?,
+        scratch: absolute(&options.scratch)?,
+        ..options.clone()
+    };
+    if !options.recordings.is_dir() {
+        let _ = writeln!(std::io::stderr(), "skipped: no recordings at {}", options.recordings.display());
+        return Ok(());
+    }
+    let rows = real::all(&options, |line| {
+        let _ = writeln!(std::io::stderr(), "{line}");
+    })?;
+    let page = real::page(&rows);
+    if let Some(path) = markdown {
+        std::fs::write(&path, &page).map_err(|source| ConcealError::File { path, source })?;
+    }
+    let _ = writeln!(std::io::stdout(), "{page}");
     Ok(())
 }

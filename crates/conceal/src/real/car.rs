@@ -396,3 +396,59 @@ fn cold(said: &Said, trips: &[Trip]) -> Row {
 fn yes(whether: bool) -> String {
     if whether { "yes" } else { "no" }.to_owned()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use headland_trace::{Origin, Run, Trace};
+
+    /// A winter trip of 600 s at 10 Hz whose heater is switched between 1 and 4 kW every 100 s.
+    fn trip() -> Trip {
+        let time_s: Vec<f64> = (0..6000).map(|index| 0.1 * f64::from(index)).collect();
+        let power = |time: &f64| if (time / 100.0).floor() % 2.0 == 0.0 { 1000.0 } else { 4000.0 };
+        Trip {
+            name: "TripB05".to_owned(),
+            winter: true,
+            speed_m_s: vec![10.0; 6000],
+            auxiliaries_w: time_s.iter().map(power).collect(),
+            acceleration_m_s2: vec![0.0; 6000],
+            ambient_c: vec![5.0; 6000],
+            note: String::new(),
+            time_s,
+        }
+    }
+
+    fn told(trip: &Trip, share: f64) -> Said {
+        let mut trace = Trace::new(trip.time_s.clone()).unwrap();
+        let power = trip.auxiliaries_w.iter().map(|power| 300.0 + share * power).collect();
+        trace.push("auxiliary_power_w", power, Origin::Predicted).unwrap();
+        Said {
+            diagnosis: None,
+            answer: String::new(),
+            effects: vec![Run { id: trip.name.clone(), trace }],
+            wall_s: 0.0,
+            out: std::path::PathBuf::new(),
+        }
+    }
+
+    #[test]
+    fn a_heater_that_is_told_half_as_strong_correlates_and_misses_the_slope() {
+        let trip = trip();
+        let met = |share: f64| -> Vec<Option<bool>> {
+            let row = heater(&told(&trip, share), std::slice::from_ref(&trip));
+            row.figures.iter().map(|figure| figure.met).collect()
+        };
+        // Named, reconstructed in all, correlation, slope.
+        assert_eq!(met(1.0), [Some(false), Some(true), Some(true), Some(true)]);
+        assert_eq!(met(0.5), [Some(false), Some(true), Some(true), Some(false)]);
+    }
+
+    #[test]
+    fn a_load_of_the_stale_channels_size_is_told_in_summer() {
+        let mut summer = trip();
+        summer.winter = false;
+        let row = stale(&told(&summer, 2.0), std::slice::from_ref(&summer));
+        assert_eq!(row.figures[0].met, Some(false));
+        assert!(row.figures[0].value.starts_with("8300 W"));
+    }
+}

@@ -11,7 +11,11 @@
 //! conceal generate --cases 300 --seed 1 --out SET
 //! conceal score SET --program target/release/headland --markdown synthetic.md
 //! conceal score SET --without-truth --markdown synthetic_without.md
+//! conceal real --program target/release/headland --markdown real.md
 //! ```
+//!
+//! `real` does the same with recordings of real vehicles: each set is posed from the channels that were published, and the
+//! answer is then held against those that were withheld.
 //!
 //! Forces in `truth.parquet` are net and forward, powers are taken, as in the `effects.parquet` of a diagnosis. The
 //! strength of a cause is its root mean square over the white noise of its balance at one second.

@@ -5,7 +5,7 @@ use crate::statistics::{mean, median};
 use headland_plugin::Registry;
 use headland_recording::{RecordedRun, Recording};
 use headland_scenario::{Scenario, ScenarioError};
-use headland_sim::{Drive, Inputs, Model, Outcome, Replay, ReplayError, replay};
+use headland_sim::{Drive, Inputs, Model, Outcome, Replay, ReplayError, replay, travelled};
 use headland_trace::{Origin, Trace, TraceError};
 use rayon::prelude::*;
 
@@ -354,7 +354,7 @@ fn measured(
     let settings = &scenario.replay;
     let drive = settings.drive.unwrap_or_else(|| drive_of(&trace, model));
     let also = settings.inputs.clone().unwrap_or_else(|| inputs_of(&trace, drive));
-    let period_s = trace.duration_s() / (trace.len().max(2) - 1) as f64;
+    let period_s = trace.period_s();
     let smoothing_s = settings.smoothing_s.unwrap_or(SMOOTHING_SAMPLES * period_s);
     let forward = drive != Drive::Speed && drive != Drive::Coast;
     let window_s = settings.window_s.or((forward && trace.duration_s() > LONG_S).then_some(WINDOW_S));
@@ -399,13 +399,7 @@ fn measured(
 fn path_length_m(recording: &Recording, path: Option<&str>) -> f64 {
     let of_run = |run: &RecordedRun| match (run.trace.get("position_m"), run.trace.get("speed_m_s")) {
         (Some(position), _) => position.iter().copied().filter(|value| value.is_finite()).fold(0.0, f64::max),
-        (None, Some(speed)) => {
-            let steps = run.trace.time_s().windows(2).zip(speed.windows(2));
-            steps
-                .map(|(time, speed)| 0.5 * (speed[0] + speed[1]) * (time[1] - time[0]))
-                .filter(|m| m.is_finite())
-                .sum()
-        }
+        (None, Some(speed)) => travelled(run.trace.time_s(), speed).last().copied().unwrap_or(0.0),
         _ => 0.0,
     };
     recording.runs.iter().filter(|run| run.path.as_deref() == path).map(of_run).fold(0.0, f64::max)
@@ -429,12 +423,10 @@ fn drive_of(trace: &Trace, model: &Model) -> Drive {
 
 /// Every circumstance that was recorded throughout; neutral only where it is not what drives.
 fn inputs_of(trace: &Trace, drive: Drive) -> Vec<Inputs> {
-    let whole =
-        |name: &&str| trace.get(name).is_some_and(|values| values.iter().all(|value| value.is_finite()));
     Inputs::ALL
         .into_iter()
         .filter(|input| !(drive == Drive::Coast && *input == Inputs::Coasting))
-        .filter(|input| input.channels().iter().all(&whole))
+        .filter(|input| input.whole(trace))
         .collect()
 }
 

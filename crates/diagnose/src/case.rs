@@ -1,15 +1,17 @@
 //! What is diagnosed: a scenario, a recording, and everything that is prepared once.
 
 use crate::DiagnoseError;
-use crate::balance::{Balance, Drive0, Kind, Said, balance, block_s, drives, kinds, locate, said};
-use crate::catalogue::{Around, Cause, Form, causes};
-use crate::gram::Column;
-use crate::profile::Profile;
+use crate::balance::{Kind, System, block_s, kinds};
+use crate::catalogue::{Around, Cause, causes};
+use crate::recorded::{Recorded, recorded};
+use crate::said::{Said, said};
+use crate::search::Accepted;
+use crate::sensors::corrected;
+use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
 use headland_calibrate::study::Study;
 use headland_plugin::{Registry, closest};
 use headland_recording::Recording;
 use headland_scenario::Scenario;
-use nalgebra::DVector;
 
 /// What the user wants of a diagnosis.
 #[derive(Clone, Debug, Default)]
@@ -30,11 +32,25 @@ pub trait Progress: Sync {
     fn interrupted(&self) -> bool;
 }
 
+/// A fault of a sensor that the runs were corrected for.
+#[derive(Clone, Debug)]
+pub(crate) struct Correction {
+    pub id: &'static str,
+    pub value: f64,
+    /// How it was accepted.
+    pub accepted: Accepted,
+}
+
 /// A scenario with a recording, prepared.
 pub(crate) struct Case<'a> {
     pub study: Study<'a>,
     pub registry: &'a Registry,
-    pub drives: Vec<Drive0>,
+    /// The runs, corrected for what is known of their sensors.
+    pub runs: Vec<Recorded>,
+    /// The runs as they were recorded.
+    pub raw: Vec<Recorded>,
+    /// Faults of sensors that the runs were corrected for, and by how much.
+    pub corrections: Vec<Correction>,
     /// What the nominal model says.
     pub nominal: Vec<Said>,
     /// Whether each run may be fitted.
@@ -44,7 +60,6 @@ pub(crate) struct Case<'a> {
     pub causes: Vec<Cause>,
     pub kinds: Vec<Kind>,
     pub progress: &'a dyn Progress,
-    pub seed: u64,
     pub options: &'a Options,
 }
 
@@ -59,8 +74,7 @@ impl<'a> Case<'a> {
         progress.step("reading");
         let study = Study::new(scenario, recording, registry)?;
         let model = scenario.model(registry)?;
-        let mut drives = drives(&study, recording, &model);
-        locate(&mut drives, scenario);
+        let runs = recorded(&study, recording, &model);
         let marked: Vec<bool> = recording.runs.iter().map(|run| run.held_out).collect();
         if marked.iter().all(|held| *held) {
             return Err(headland_calibrate::study::StudyError::AllHeldOut.into());
@@ -69,80 +83,102 @@ impl<'a> Case<'a> {
         let mut case = Self {
             study,
             registry,
-            drives,
+            raw: runs.clone(),
+            runs,
+            corrections: Vec::new(),
             nominal: Vec::new(),
             fit,
             chosen,
             causes: Vec::new(),
             kinds: Kind::ORDER.to_vec(),
             progress,
-            seed: options.seed,
             options,
         };
-        case.nominal = case.said(scenario, &case.study.priors())?;
-        for (drive, said) in case.drives.iter_mut().zip(&case.nominal) {
-            accelerate(drive, said);
-        }
-        case.kinds = kinds(&case.drives, &case.nominal);
-        let around = case.around(&model);
-        let mut all = causes(&around);
+        case.suppose()?;
+        case.kinds = kinds(&case.runs, &case.nominal);
+        let mut all = causes(&case.around(&model));
         check_names(&all, registry, options)?;
         bound(&mut all, registry);
-        case.causes = all
-            .into_iter()
-            .filter(|cause| !options.without.iter().any(|id| id == cause.id))
-            .filter(|cause| options.only.is_empty() || options.only.iter().any(|id| id == cause.id))
-            .collect();
+        all.retain(|cause| case.wanted(cause.id));
+        case.causes = all;
         Ok(case)
+    }
+
+    /// Takes faults of sensors out of the recordings.
+    pub fn correct(&mut self, corrections: Vec<Correction>) -> Result<(), DiagnoseError> {
+        self.runs = self.raw.clone();
+        for correction in &corrections {
+            self.runs = corrected(&self.runs, correction.id, correction.value)?;
+        }
+        self.corrections = corrections;
+        self.suppose()
+    }
+
+    /// What the nominal model says of the runs, and how it would have accelerated.
+    fn suppose(&mut self) -> Result<(), DiagnoseError> {
+        self.nominal = self.said(self.study.scenario(), &self.study.priors())?;
+        for (run, said) in self.runs.iter_mut().zip(&self.nominal) {
+            run.accelerate(&said.resistance_n, &said.effective_mass_kg);
+        }
+        Ok(())
+    }
+
+    /// A step begins; an error where the user wants an end.
+    pub fn step(&self, what: &str) -> Result<(), DiagnoseError> {
+        self.progress.step(what);
+        if self.progress.interrupted() { Err(DiagnoseError::Interrupted) } else { Ok(()) }
     }
 
     /// What a scenario's model says of every run.
     pub fn said(&self, scenario: &Scenario, values: &[f64]) -> Result<Vec<Said>, DiagnoseError> {
-        self.said_of(&self.drives, scenario, values)
+        self.said_of(&self.runs, scenario, values)
     }
 
     /// As [`Case::said`], of other recordings of the same runs.
     pub fn said_of(
         &self,
-        drives: &[Drive0],
+        runs: &[Recorded],
         scenario: &Scenario,
         values: &[f64],
     ) -> Result<Vec<Said>, DiagnoseError> {
-        let model = |run: usize| Ok(self.study.model_of(scenario, &drives[run].measured, values)?);
-        said(self.registry, drives, &self.kinds, model, |_| None)
+        said(runs, &self.kinds, |run| Ok(self.study.model_of(scenario, &runs[run].measured, values)?))
     }
 
-    /// As [`Case::said`], with one more effect, which may be another in each run.
+    /// As [`Case::said`], with one more effect, which may be another in each run, and what the balances `kinds` need.
     pub fn said_with(
         &self,
-        text: &(impl Fn(&Drive0) -> String + Sync),
+        text: &(impl Fn(&Recorded) -> String + Sync),
         values: &[f64],
+        kinds: &[Kind],
     ) -> Result<Vec<Said>, DiagnoseError> {
         let mut variants: Vec<(String, Scenario)> = Vec::new();
-        for drive in &self.drives {
-            let text = text(drive);
+        for run in &self.runs {
+            let text = text(run);
             if !variants.iter().any(|(known, _)| *known == text) {
                 let scenario = self.study.scenario().with_effect(&text, self.registry)?;
                 variants.push((text, scenario));
             }
         }
-        let model = |run: usize| {
-            let text = text(&self.drives[run]);
+        said(&self.runs, kinds, |run| {
+            let text = text(&self.runs[run]);
             let scenario = variants.iter().find(|(known, _)| *known == text).map(|(_, scenario)| scenario);
             let scenario = scenario.unwrap_or(self.study.scenario());
-            Ok(self.study.model_of(scenario, &self.drives[run].measured, values)?)
-        };
-        said(self.registry, &self.drives, &self.kinds, model, |_| None)
+            Ok(self.study.model_of(scenario, &self.runs[run].measured, values)?)
+        })
     }
 
-    /// The balances, from the ground up.
-    pub fn balances(&self, usable: &[Vec<bool>]) -> Vec<Balance> {
-        let block_s = block_s(&self.drives);
-        self.kinds
-            .iter()
-            .map(|kind| balance(*kind, &self.drives, &self.nominal, block_s, usable))
-            .filter(|balance| balance.chunks.iter().any(|chunk| self.fit[chunk.run]))
-            .collect()
+    /// The rows of every balance, of samples that are `usable`.
+    pub fn system(&self, usable: &[Vec<bool>]) -> System {
+        System::new(&self.kinds, &self.runs, &self.nominal, block_s(&self.runs), usable, &self.fit)
+    }
+
+    /// Names of the channels of all runs.
+    pub fn channels(&self) -> Vec<String> {
+        let all = self.runs.iter().flat_map(|run| run.measured.trace.channels());
+        let mut names: Vec<String> = all.map(|channel| channel.name.clone()).collect();
+        names.sort_unstable();
+        names.dedup();
+        names
     }
 
     /// Whether the user lets a cause be claimed.
@@ -151,131 +187,81 @@ impl<'a> Case<'a> {
         !without.iter().any(|one| one == id) && (only.is_empty() || only.iter().any(|one| one == id))
     }
 
-    /// Causes that the user does not want claimed.
-    pub fn banned(&self) -> Vec<&str> {
-        self.options.without.iter().map(String::as_str).collect()
-    }
-
-    /// A function-valued cause on a balance.
-    pub fn profile<'b>(&self, balance: &Balance, form: Form, signature: &'b Column) -> Profile<'b> {
-        let over_position = form == Form::OverPosition;
-        let group_of: Vec<usize> = if over_position {
-            self.drives.iter().map(|drive| drive.path).collect()
-        } else {
-            (0..self.drives.len()).collect()
-        };
-        let groups = group_of.iter().max().map_or(0, |most| most + 1);
-        let mut extents = vec![(f64::INFINITY, f64::NEG_INFINITY); groups];
-        let at: Column = balance
-            .chunks
-            .iter()
-            .map(|chunk| {
-                let drive = &self.drives[chunk.run];
-                let place = |row: &crate::rows::Row| {
-                    let at = if over_position { row.mean(&drive.position_m) } else { row.time_s };
-                    if at.is_finite() { at } else { 0.0 }
-                };
-                let at = DVector::from_iterator(chunk.rows.len(), chunk.rows.iter().map(place));
-                let extent = &mut extents[group_of[chunk.run]];
-                *extent = (extent.0.min(at.min()), extent.1.max(at.max()));
-                at
-            })
-            .collect();
-        for extent in &mut extents {
-            if !extent.0.is_finite() {
-                *extent = (0.0, 1.0);
-            }
-        }
-        Profile { signature, at, group_of, extents }
-    }
-
     fn around(&self, model: &headland_sim::Model) -> Around {
-        let mut speeds: Vec<f64> = self
-            .drives
+        let moving = |run: &'_ Recorded| -> Vec<f64> {
+            let speeds = run.motion.value.iter().step_by(7).copied();
+            speeds.filter(|speed| *speed > crate::recorded::SLOWEST_M_S).collect()
+        };
+        let speeds = sorted(&self.runs.iter().flat_map(moving).collect::<Vec<f64>>());
+        let quantile = |share: f64| if speeds.is_empty() { 1.0 } else { quantile_of_sorted(&speeds, share) };
+        let names = self.runs.first().map(|run| run.measured.trace.channels()).unwrap_or_default();
+        let everywhere = |name: &str| self.runs.iter().all(|run| run.measured.trace.get(name).is_some());
+        let mut passes = vec![0; self.runs.len()];
+        for run in &self.runs {
+            passes[run.path] += 1;
+        }
+        let temperatures = self.runs.iter().filter_map(|run| run.measured.trace.get("air_temperature_c"));
+        let (coldest, warmest) = range(temperatures.flatten().copied());
+        let masses =
+            self.nominal.iter().filter_map(|said| said.effective_mass_kg.iter().find(|one| one.is_finite()));
+        let weight_n = model.vehicle.mass_kg * model.gravity_m_s2;
+        let resistances: Vec<f64> = self
+            .nominal
             .iter()
-            .flat_map(|drive| drive.motion.value.iter().step_by(7))
-            .copied()
-            .filter(|speed| *speed > 0.4)
+            .flat_map(|said| said.resistance_n.iter().step_by(7))
+            .filter(|force| force.is_finite())
+            .map(|force| force / weight_n)
             .collect();
-        speeds.sort_by(f64::total_cmp);
-        let quantile = |share: f64| {
-            // A share of a length.
-            #[allow(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "between 0 and the length"
-            )]
-            let index = (share * speeds.len().saturating_sub(1) as f64) as usize;
-            speeds.get(index).copied().unwrap_or(1.0)
-        };
-        let names = self.drives.first().map(|drive| drive.measured.trace.channels()).unwrap_or_default();
-        let everywhere =
-            |name: &str| self.drives.iter().all(|drive| drive.measured.trace.get(name).is_some());
-        let mut drives = false;
-        for drive in &self.drives {
-            let coasting = drive.measured.trace.get("coasting");
-            for (index, force) in drive.force_n.iter().flatten().enumerate() {
-                let free = coasting.is_some_and(|coasting| coasting[index] >= 0.5);
-                drives |= !free && force.is_finite() && *force != 0.0;
-            }
-        }
-        let mut passes = vec![0; self.drives.len()];
-        for drive in &self.drives {
-            passes[drive.path] += 1;
-        }
-        let temperatures =
-            self.drives.iter().filter_map(|drive| drive.measured.trace.get("air_temperature_c"));
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for value in temperatures.flatten().filter(|value| value.is_finite()) {
-            (low, high) = (low.min(*value), high.max(*value));
-        }
-        let situation_area = match model.vehicle.resistance {
-            headland_sim::Resistance::Drag { area_m2 } => area_m2,
-            headland_sim::Resistance::RoadLoad { f2_n_s2_m2, air_density_kg_m3, .. } => {
-                2.0 * f2_n_s2_m2 / air_density_kg_m3
-            }
-        };
         Around {
             mass_kg: model.vehicle.mass_kg,
             gravity_m_s2: model.gravity_m_s2,
-            drag_area_m2: situation_area,
+            drag_area_m2: model.vehicle.resistance.drag_area_m2(),
+            rotating_mass_kg: model.vehicle.rotating_mass_kg,
+            masses_kg: range(masses.copied()),
+            coefficient: if resistances.is_empty() { 0.0 } else { median(&resistances).max(0.0) },
             speeds_m_s: [0.2, 0.35, 0.5, 0.65, 0.8].map(quantile),
-            duration_s: self.drives.iter().map(|drive| drive.measured.trace.duration_s()).fold(0.0, f64::max),
+            duration_s: self.runs.iter().map(|run| run.measured.trace.duration_s()).fold(0.0, f64::max),
             channels: names
                 .iter()
                 .map(|channel| channel.name.clone())
                 .filter(|name| everywhere(name))
                 .collect(),
-            drives: drives || self.drives.iter().all(|drive| drive.force_n.is_none()),
+            drives: self.driven() || self.runs.iter().all(|run| run.force_n.is_none()),
             passes: passes.into_iter().max().unwrap_or(1),
-            temperatures_k: (high - low).max(0.0),
+            temperatures_k: (warmest - coldest).max(0.0),
         }
+    }
+
+    /// Whether force or torque drives somewhere.
+    fn driven(&self) -> bool {
+        self.runs.iter().any(|run| {
+            let coasting = run.measured.trace.get("coasting");
+            run.force_n.iter().flatten().enumerate().any(|(index, force)| {
+                let free = coasting.is_some_and(|coasting| coasting[index] >= 0.5);
+                !free && force.is_finite() && *force != 0.0
+            })
+        })
     }
 }
 
-/// The acceleration that recorded force and nominal model make, where the vehicle moves and the force is known.
-fn accelerate(drive: &mut Drive0, said: &Said) {
-    /// Below this speed friction at rest decides [m/s].
-    const SLOWEST_M_S: f64 = 0.4;
-    let Some(force) = &drive.force_n else { return };
-    for (index, acceleration) in drive.acceleration_m_s2.iter_mut().enumerate() {
-        let made = (force[index] - said.resistance_n[index]) / said.effective_mass_kg[index];
-        if made.is_finite() && drive.motion.value[index] > SLOWEST_M_S {
-            *acceleration = made;
-        }
-    }
+/// Least and greatest of the finite values; infinite and reversed where there are none.
+fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let finite = values.filter(|value| value.is_finite());
+    finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
 /// A parameter that its effect does not let be negative is not searched below zero.
 fn bound(causes: &mut [Cause], registry: &Registry) {
-    use headland_plugin::Bound::{Efficiency, NotNegative, Positive};
+    use headland_plugin::Bound::{Efficiency, NotNegative, Positive, Within};
     for cause in causes {
         let Some(card) = registry.effects.card(cause.id) else { continue };
         for term in &mut cause.terms {
             let parameter = card.parameters.iter().find(|parameter| parameter.name == term.name);
-            let positive =
-                parameter.is_some_and(|one| matches!(one.bound, NotNegative | Positive | Efficiency));
-            term.positive |= positive;
+            match parameter.map(|parameter| parameter.bound) {
+                Some(NotNegative | Positive | Efficiency) => term.low = term.low.max(0.0),
+                Some(Within(low, high)) => (term.low, term.high) = (term.low.max(low), term.high.min(high)),
+                _ => {}
+            }
         }
     }
 }

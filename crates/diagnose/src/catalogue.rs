@@ -23,8 +23,10 @@ pub struct Term {
     pub scale: f64,
     /// Whether the cause is proportional to it.
     pub linear: bool,
-    /// Whether it cannot be negative.
-    pub positive: bool,
+    /// Least that it can be.
+    pub low: f64,
+    /// Most that it can be.
+    pub high: f64,
 }
 
 /// What the vehicle and its runs are like, for scales and grids.
@@ -44,6 +46,12 @@ pub struct Around {
     pub channels: Vec<String>,
     /// Whether force or torque drives somewhere.
     pub drives: bool,
+    /// Mass that nominally belongs to what rotates [kg].
+    pub rotating_mass_kg: f64,
+    /// Least and greatest mass of a run [kg].
+    pub masses_kg: (f64, f64),
+    /// Resistance over weight at walking speed.
+    pub coefficient: f64,
     /// Largest number of runs on one path.
     pub passes: usize,
     /// Range of the air temperature [K]; 0 where it is not known.
@@ -90,16 +98,31 @@ pub struct Cause {
 
 const MOTION: &[Kind] = &[Kind::Motion, Kind::Battery, Kind::Fuel];
 
+/// An effect so many times its usual size is none of this kind.
+const MOST_SIZES: f64 = 8.0;
+
 fn linear(name: &'static str, unit: &'static str, scale: f64) -> Term {
-    Term { name, unit, scale, linear: true, positive: false }
+    Term { name, unit, scale, linear: true, low: -MOST_SIZES * scale, high: MOST_SIZES * scale }
 }
 
 fn positive(name: &'static str, unit: &'static str, scale: f64) -> Term {
-    Term { name, unit, scale, linear: true, positive: true }
+    Term { low: 0.0, ..linear(name, unit, scale) }
 }
 
 fn shape(name: &'static str, unit: &'static str) -> Term {
-    Term { name, unit, scale: 1.0, linear: false, positive: true }
+    Term { name, unit, scale: 1.0, linear: false, low: 0.0, high: f64::INFINITY }
+}
+
+impl Term {
+    /// Held where it is.
+    fn held(self, value: f64) -> Self {
+        self.within(value, value)
+    }
+
+    /// With other limits.
+    fn within(self, low: f64, high: f64) -> Self {
+        Self { low, high, ..self }
+    }
 }
 
 fn cause(
@@ -142,6 +165,32 @@ impl Cause {
         self
     }
 
+    /// Whether it is a function of position or time.
+    pub fn is_function(&self) -> bool {
+        matches!(self.form, Form::OverPosition | Form::OverTime)
+    }
+
+    /// A function's cause with one value throughout: its identifier, and the parameter's name.
+    pub fn even(&self) -> Option<(&'static str, &'static str)> {
+        match (self.is_function(), self.id) {
+            (false, _) => None,
+            (true, "grade") => Some(("grade_constant", "grade")),
+            (true, "soft_ground") => Some(("rolling_resistance", "coefficient")),
+            (true, "payload_change") => Some(("mass", "extra_mass_kg")),
+            (true, _) => Some(("auxiliary_power", "power_w")),
+        }
+    }
+
+    /// The effect of a function that has one value throughout, as a scenario writes it.
+    pub fn constant(&self, value: f64) -> String {
+        self.even().map_or_else(String::new, |(id, name)| format!("{id}({name}: {value:?})"))
+    }
+
+    /// Whether a value of a term is what it cannot be.
+    pub fn impossible(&self, term: usize, value: f64) -> bool {
+        !(self.terms[term].low..=self.terms[term].high).contains(&value)
+    }
+
     /// The effect as a scenario writes it, with all parameters in the order of the terms.
     pub fn written(&self, values: &[f64]) -> String {
         match self.id {
@@ -153,6 +202,12 @@ impl Cause {
             "cornering_drag" => {
                 format!("cornering_drag(cornering_stiffness_n_per_rad: {:?})", 1.0 / values[0].max(1e-12))
             }
+            "load_dependence" => format!(
+                "load_dependence(coefficient: {:?}, exponent: {:?}, reference_mass_kg: {:?})",
+                values[1],
+                1.0 + values[0],
+                values[2]
+            ),
             "variator_loss" => {
                 format!("variator_loss(loss: {:?}, node_speeds_m_s: [{:?}])", values[0], values[1])
             }
@@ -206,6 +261,8 @@ pub fn causes(around: &Around) -> Vec<Cause> {
     let has = |name: &str| around.channels.iter().any(|channel| channel == name);
     // From a tenth of the longest run to six of it, evenly in proportion.
     let taus: Vec<Vec<f64>> = (0..7).map(|step| vec![0.1 * around.duration_s * 2f64.powi(step)]).collect();
+    // An implement can pull as much as the ground can hold.
+    let pull = positive("force_n", "N", 0.02 * weight).within(0.0, weight);
     let mut all = vec![
         cause(
             "wind",
@@ -248,7 +305,10 @@ pub fn causes(around: &Around) -> Vec<Cause> {
         cause(
             "rotating_inertia",
             MOTION,
-            vec![linear("rotating_mass_kg", "kg", 0.06 * around.mass_kg)],
+            vec![
+                linear("rotating_mass_kg", "kg", 0.06 * around.mass_kg)
+                    .within(-around.rotating_mass_kg, 0.4 * around.mass_kg),
+            ],
             "F = m_rot dv/dt",
             &["acceleration_m_s2"],
             "the inertia of rotating parts",
@@ -257,7 +317,10 @@ pub fn causes(around: &Around) -> Vec<Cause> {
         cause(
             "mass",
             MOTION,
-            vec![linear("extra_mass_kg", "kg", 0.08 * around.mass_kg)],
+            vec![
+                linear("extra_mass_kg", "kg", 0.08 * around.mass_kg)
+                    .within(-0.5 * around.mass_kg, around.mass_kg),
+            ],
             "F = Δm (dv/dt + g (sin θ + c cos θ))",
             &["acceleration_m_s2"],
             "a different mass",
@@ -294,7 +357,10 @@ pub fn causes(around: &Around) -> Vec<Cause> {
         cause(
             "rolling_speed_law",
             MOTION,
-            vec![linear("linear", "1", 0.015), shape("reference_speed_m_s", "m/s")],
+            vec![
+                linear("linear", "1", 0.015),
+                shape("reference_speed_m_s", "m/s").held(around.speeds_m_s[2].max(0.5)),
+            ],
             "F = Δc (v/v₀ − 1) N",
             &["speed_m_s"],
             "rolling resistance that depends otherwise on speed",
@@ -346,7 +412,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
         cause(
             "drawbar_load",
             MOTION,
-            vec![positive("force_n", "N", 0.02 * weight)],
+            vec![pull],
             "F = F₀",
             &[],
             "an implement or trailer that was not recorded",
@@ -355,7 +421,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
         cause(
             "drawbar_load",
             MOTION,
-            vec![positive("force_n", "N", 0.02 * weight), shape("from_s", "s"), shape("to_s", "s")],
+            vec![pull, shape("from_s", "s"), shape("to_s", "s")],
             "F = F₀ between two times",
             &["time_s"],
             "an implement that is down for a while",
@@ -393,6 +459,24 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             "drag of the tyres in curves",
             "drive circles of two radii, both ways",
         ));
+    }
+    if around.masses_kg.1 > 1.02 * around.masses_kg.0 {
+        all.push(
+            cause(
+                "load_dependence",
+                MOTION,
+                vec![
+                    linear("exponent_change", "1", 0.2).within(-0.7, 0.7),
+                    shape("coefficient", "1").held(around.coefficient),
+                    shape("reference_mass_kg", "kg").held(around.mass_kg),
+                ],
+                "F = c W ((W / W₀)^(β − 1) − 1)",
+                &["payload_kg"],
+                "rolling resistance that is not in proportion to the load",
+                "repeat with two masses that differ by a quarter",
+            )
+            .shaped(vec![vec![around.coefficient, around.mass_kg]]),
+        );
     }
     if around.passes > 2 {
         all.push(
@@ -453,10 +537,10 @@ pub fn causes(around: &Around) -> Vec<Cause> {
                 "rolling_temperature",
                 MOTION,
                 vec![
-                    shape("cold_coefficient", "1"),
-                    shape("time_constant_s", "s"),
+                    shape("cold_coefficient", "1").held(0.0),
+                    shape("time_constant_s", "s").held(600.0),
                     linear("coefficient_per_k", "1/K", 3e-4),
-                    shape("reference_temperature_c", "°C"),
+                    shape("reference_temperature_c", "°C").held(20.0),
                 ],
                 "F = k (T₀ − T) N",
                 &["air_temperature_c"],
@@ -478,13 +562,12 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             .shaped(vec![vec![15.0], vec![20.0]]),
         );
     }
-    powers(&mut all, around);
+    powers(&mut all);
     sensors(&mut all, around);
     all
 }
 
-fn powers(all: &mut Vec<Cause>, around: &Around) {
-    let _ = around;
+fn powers(all: &mut Vec<Cause>) {
     all.push(cause(
         "auxiliary_power",
         &[Kind::Battery, Kind::Fuel],
@@ -543,14 +626,18 @@ fn sensors(all: &mut Vec<Cause>, around: &Around) {
         cause(id, balances, vec![term], equation, &[], words, experiment).artefact()
     };
     if around.drives {
-        all.push(artefact(
-            "latency",
-            &[Kind::Motion],
-            linear("latency_s", "s", 0.1),
-            "y(t) = x(t − δ)",
-            "speed that arrives late",
-            "brake once hard with an accelerometer beside it",
-        ));
+        all.push(
+            artefact(
+                "latency",
+                &[Kind::Motion],
+                linear("latency_s", "s", 0.1).within(-1.5, 3.0),
+                "y(t) = x(t − δ)",
+                "speed that arrives late",
+                "brake once hard with an accelerometer beside it",
+            )
+            // A late signal is not linear in its latency, so it is tried at several.
+            .shaped(vec![vec![0.05], vec![0.2], vec![0.6], vec![-0.2]]),
+        );
         all.push(artefact(
             "force_scale",
             &[Kind::Motion],

@@ -5,7 +5,10 @@
 //! Source: Kay, *Fundamentals of Statistical Signal Processing: Detection Theory* (1998), chapter 4.
 
 use crate::Case;
-use crate::balance::{Balance, Drive0, Kind};
+use crate::balance::{Kind, System};
+use crate::noise::Whitener;
+use crate::recorded::Recorded;
+use crate::rows::{Chunk, Row};
 use crate::search::Found;
 use headland_units::constants::STANDARD_GRAVITY_M_S2;
 use nalgebra::DVector;
@@ -40,53 +43,29 @@ const MOST: usize = 6;
 const BRAKED_M_S2: f64 = -0.25;
 
 /// The spells of the motion balance, where there are some.
-pub fn events(case: &Case, balance: &Balance, found: &Found) -> Vec<Event> {
-    if balance.kind != Kind::Motion {
-        return Vec::new();
-    }
-    let Some(whitener) = found.noise.1.whitener(&balance.chunks) else { return Vec::new() };
+pub fn events(case: &Case, system: &System, found: &Found) -> Vec<Event> {
+    let Some(whiteners) = found.noises.1.whiteners(&system.chunks) else { return Vec::new() };
     let of_chunk = |index: usize| -> Vec<Event> {
-        let chunk = &balance.chunks[index];
-        let drive = &case.drives[chunk.run];
-        let mut left = found.left[index].clone();
+        let chunk = &system.chunks[index];
+        if system.kind(chunk) != Kind::Motion {
+            return Vec::new();
+        }
+        let boxes = Box::all(chunk, whiteners.of(chunk));
+        let mut left = whiteners.of(chunk).whiten(&found.left[index]);
         let mut all = Vec::new();
         for _ in 0..MOST {
-            let white = whitener.whiten(chunk, &left);
-            let mut best: Option<(usize, usize, f64, f64, f64)> = None;
-            for length in LENGTHS.into_iter().filter(|length| 2 * length <= chunk.rows.len()) {
-                for from in 0..=chunk.rows.len() - length {
-                    let box_n = DVector::from_fn(chunk.rows.len(), |row, _| {
-                        f64::from((from..from + length).contains(&row))
-                    });
-                    let x = whitener.whiten(chunk, &box_n);
-                    let (product, square) = (x.dot(&white), x.norm_squared());
-                    let gain = 0.5 * product * product / square;
-                    if product > 0.0 && best.is_none_or(|(.., known)| gain > known) {
-                        best = Some((from, length, product / square, square.sqrt().recip(), gain));
-                    }
-                }
-            }
-            let Some((from, length, force_n, sd_n, gain)) = best.filter(|(.., gain)| *gain > LEAST_GAIN)
-            else {
-                break;
-            };
-            for row in from..from + length {
-                left[row] -= force_n;
-            }
-            let time_s = drive.measured.trace.time_s();
-            let edge = |row: usize, side: usize| time_s[chunk.rows[row].samples[side].min(time_s.len() - 1)];
-            all.push(Event {
-                run: chunk.run,
-                from_s: edge(from, 1),
-                to_s: edge(from + length - 1, 1).max(chunk.rows[from + length - 1].time_s),
-                force_n,
-                sd_n,
-                gain,
+            let judged = boxes.iter().filter_map(|one| {
+                let product = one.white.dot(&left);
+                (product > 0.0).then(|| (0.5 * product * product / one.square, product / one.square, one))
             });
+            let best = judged.max_by(|one, other| one.0.total_cmp(&other.0));
+            let Some((gain, force_n, one)) = best.filter(|(gain, ..)| *gain > LEAST_GAIN) else { break };
+            left -= &one.white * force_n;
+            all.push(one.event(&case.runs[chunk.run], chunk, force_n, gain));
         }
         all
     };
-    let mut all: Vec<Event> = (0..balance.chunks.len()).into_par_iter().flat_map_iter(of_chunk).collect();
+    let mut all: Vec<Event> = (0..system.chunks.len()).into_par_iter().flat_map_iter(of_chunk).collect();
     all.sort_by(|one, other| one.run.cmp(&other.run).then(one.from_s.total_cmp(&other.from_s)));
     let weight_n = |event: &Event| {
         let said = &case.nominal[event.run];
@@ -94,6 +73,45 @@ pub fn events(case: &Case, balance: &Balance, found: &Found) -> Vec<Event> {
             * STANDARD_GRAVITY_M_S2
     };
     joined(all).into_iter().filter(|event| event.force_n > WEAKEST * weight_n(event)).collect()
+}
+
+/// A stretch of rows with a force of one.
+struct Box {
+    from: usize,
+    length: usize,
+    /// As it comes through the whitening.
+    white: DVector<f64>,
+    square: f64,
+}
+
+impl Box {
+    /// Every stretch of a chunk.
+    fn all(chunk: &Chunk, whitener: &Whitener) -> Vec<Self> {
+        let rows = chunk.rows.len();
+        let lengths = LENGTHS.into_iter().filter(|length| 2 * length <= rows);
+        let places = lengths.flat_map(|length| (0..=rows - length).map(move |from| (from, length)));
+        places
+            .map(|(from, length)| {
+                let inside = |row: usize| f64::from((from..from + length).contains(&row));
+                let white = whitener.whiten(&DVector::from_fn(rows, |row, _| inside(row)));
+                Self { from, length, square: white.norm_squared(), white }
+            })
+            .collect()
+    }
+
+    fn event(&self, run: &Recorded, chunk: &Chunk, force_n: f64, gain: f64) -> Event {
+        let time_s = run.measured.trace.time_s();
+        let last = &chunk.rows[self.from + self.length - 1];
+        let edge = |row: &Row| time_s[row.samples[1].min(time_s.len() - 1)];
+        Event {
+            run: chunk.run,
+            from_s: edge(&chunk.rows[self.from]),
+            to_s: edge(last).max(last.time_s),
+            force_n,
+            sd_n: self.square.sqrt().recip(),
+            gain,
+        }
+    }
 }
 
 /// Spells that overlap or touch are one, with the force of their means.
@@ -115,9 +133,8 @@ fn joined(all: Vec<Event>) -> Vec<Event> {
 }
 
 /// Samples that lie in no spell, run by run; a spell's edges go with it.
-pub fn outside(drives: &[Drive0], events: &[Event], margin_s: f64) -> Vec<Vec<bool>> {
-    drives
-        .iter()
+pub fn outside(runs: &[Recorded], events: &[Event], margin_s: f64) -> Vec<Vec<bool>> {
+    runs.iter()
         .enumerate()
         .map(|(run, drive)| {
             let own: Vec<&Event> = events.iter().filter(|event| event.run == run).collect();
@@ -130,9 +147,9 @@ pub fn outside(drives: &[Drive0], events: &[Event], margin_s: f64) -> Vec<Vec<bo
 }
 
 /// What spells are called: brakes where the vehicle slows down without being driven, a pull at the hitch otherwise.
-pub fn name(drives: &[Drive0], events: &[Event]) -> &'static str {
+pub fn name(runs: &[Recorded], events: &[Event]) -> &'static str {
     let braked = |event: &&Event| {
-        let drive = &drives[event.run];
+        let drive = &runs[event.run];
         let time_s = drive.measured.trace.time_s();
         let within: Vec<usize> =
             (0..time_s.len()).filter(|index| (event.from_s..=event.to_s).contains(&time_s[*index])).collect();

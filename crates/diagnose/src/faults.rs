@@ -1,6 +1,6 @@
 //! Faults that a channel shows by itself: a value that sticks, steps that are too coarse, samples that are lost.
 
-use crate::balance::Drive0;
+use crate::recorded::Recorded;
 use crate::report::Interval;
 use headland_trace::Trace;
 
@@ -45,7 +45,7 @@ const LOOKED_AT: [&str; 6] = [
 ];
 
 /// The faults of all runs, and the samples that may be used.
-pub fn faults(drives: &[Drive0]) -> (Vec<Fault>, Vec<Vec<bool>>) {
+pub fn faults(drives: &[Recorded]) -> (Vec<Fault>, Vec<Vec<bool>>) {
     let mut usable: Vec<Vec<bool>> =
         drives.iter().map(|drive| vec![true; drive.measured.trace.len()]).collect();
     let mut all = Vec::new();
@@ -60,7 +60,7 @@ pub fn faults(drives: &[Drive0]) -> (Vec<Fault>, Vec<Vec<bool>>) {
     (all, usable)
 }
 
-fn place(drive: &Drive0, from: usize, to: usize) -> Interval {
+fn place(drive: &Recorded, from: usize, to: usize) -> Interval {
     let time_s = drive.measured.trace.time_s();
     Interval {
         run: drive.measured.id.clone(),
@@ -86,7 +86,7 @@ fn still(values: &[f64]) -> Vec<(usize, usize)> {
     all
 }
 
-fn stuck(drives: &[Drive0], name: &str, usable: &mut [Vec<bool>]) -> Option<Fault> {
+fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fault> {
     let mut stretches = Vec::new();
     let mut runs = 0;
     let mut seconds = 0.0;
@@ -129,7 +129,7 @@ fn stuck(drives: &[Drive0], name: &str, usable: &mut [Vec<bool>]) -> Option<Faul
     })
 }
 
-fn coarse(drives: &[Drive0], name: &str) -> Option<Fault> {
+fn coarse(drives: &[Recorded], name: &str) -> Option<Fault> {
     let (mut repeated, mut count) = (0usize, 0usize);
     let mut steps: Vec<f64> = Vec::new();
     for drive in drives {
@@ -166,7 +166,7 @@ fn coarse(drives: &[Drive0], name: &str) -> Option<Fault> {
     })
 }
 
-fn lost(drives: &[Drive0]) -> Option<Fault> {
+fn lost(drives: &[Recorded]) -> Option<Fault> {
     let (mut gaps_s, mut whole_s) = (0.0, 0.0);
     let mut stretches = Vec::new();
     for drive in drives {

@@ -4,7 +4,7 @@
 //! −2 ln p(r) = rᵀΣ⁻¹r − βᵀ(XᵀΣ⁻¹X + P)β + ln|Σ| + ln|XᵀΣ⁻¹X + P| − ln|P| + n ln 2π.
 //! Source: Bishop, *Pattern Recognition and Machine Learning* (2006), section 3.5.
 
-use crate::noise::{Noise, Whitener};
+use crate::noise::{Noises, Whiteners};
 use crate::rows::Chunk;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ pub struct Whitened {
     /// One matrix for each chunk; the residual is its last column.
     pub chunks: Vec<DMatrix<f64>>,
     /// What whitened them.
-    pub whitener: Whitener,
+    pub whiteners: Whiteners,
     width: usize,
 }
 
@@ -49,8 +49,8 @@ pub struct Estimate {
 
 impl Whitened {
     /// Whitens residual and columns.
-    pub fn new(chunks: &[Chunk], residual: &Column, columns: &[Column], noise: &Noise) -> Option<Self> {
-        let whitener = noise.whitener(chunks)?;
+    pub fn new(chunks: &[Chunk], residual: &Column, columns: &[&Column], noise: &Noises) -> Option<Self> {
+        let whiteners = noise.whiteners(chunks)?;
         let width = columns.len();
         let whiten = |(index, chunk): (usize, &Chunk)| {
             let mut x = DMatrix::zeros(chunk.rows.len(), width + 1);
@@ -58,11 +58,11 @@ impl Whitened {
                 x.set_column(column, &values[index]);
             }
             x.set_column(width, &residual[index]);
-            whitener.whiten_all(chunk, &mut x);
+            whiteners.of(chunk).whiten_all(&mut x);
             x
         };
         let all = chunks.par_iter().enumerate().map(whiten).collect();
-        Some(Self { chunks: all, whitener, width })
+        Some(Self { chunks: all, whiteners, width })
     }
 
     /// Number of columns.
@@ -82,7 +82,7 @@ impl Whitened {
         for (chunk, product) in chunks.iter().zip(products) {
             if let Some(product) = product {
                 sum += product;
-                log_determinant += self.whitener.log_determinant(chunk);
+                log_determinant += self.whiteners.of(chunk).log_determinant(chunk.rows.len());
                 rows += chunk.rows.len();
             }
         }

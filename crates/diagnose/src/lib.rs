@@ -1,16 +1,19 @@
 //! Finds the physics that a scenario left out.
 //!
-//! From the ground up, every balance that the recorded channels allow is written in its weak form and its noise is
-//! estimated. Causes are then tried on: each effect is put into the scenario, every run is driven with it, and what the
-//! model says differently is a regressor beside the free parameters and their priors. A cause is accepted where the
-//! evidence grows more than chance could make it grow; causes that explain as much are named beside it. What was
-//! accepted is fitted again without linearising, written into the scenario, and shown on runs that were held out.
+//! Every balance that the recorded channels allow is written in its weak form, all of them side by side, and their noise
+//! is estimated. Causes are then tried on: each effect is put into the scenario, every run is driven with it, and what
+//! the model says differently is a regressor beside the free parameters and their priors. Sets of causes are grown while
+//! the evidence grows more than chance could make it grow; causes that explain as much are named beside them. Faults of
+//! sensors are taken out of the recordings before what is left is called physics. What was accepted is fitted again
+//! without linearising, written into the scenario, and shown on runs that were held out.
 
 #![allow(clippy::result_large_err, reason = "a diagnosis fails once, not in a loop")]
 
 mod balance;
 mod case;
 mod catalogue;
+mod contest;
+mod crossval;
 mod error;
 mod events;
 mod faults;
@@ -19,10 +22,15 @@ mod locate;
 mod noise;
 mod profile;
 mod prove;
+mod recorded;
 mod refine;
 mod report;
 mod rows;
+mod said;
 mod search;
+mod sensors;
+mod sharpen;
+mod state;
 mod trial;
 mod words;
 
@@ -31,11 +39,13 @@ pub use case::{Options, Progress};
 pub use error::DiagnoseError;
 pub use report::{
     Calibrated, Diagnosed, Diagnosis, FindingKind, FindingReport, Fit, FitRuns, Interval, LeftOver,
-    ParameterReport, Rival, Tried, Verdict,
+    ParameterReport, RivalReport as Rival, Tried, Verdict,
 };
 
+pub(crate) use balance::System;
 pub(crate) use case::Case;
 
+use case::Correction;
 use headland_plugin::Registry;
 use headland_recording::Recording;
 use headland_scenario::Scenario;
@@ -51,117 +61,113 @@ pub fn diagnose(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Diagnosed, DiagnoseError> {
-    let case = Case::new(scenario, recording, registry, options, progress)?;
-    let (faults, sound) = faults::faults(&case.drives);
-    let faults: Vec<faults::Fault> = faults.into_iter().filter(|fault| case.wanted(fault.id)).collect();
-    let mut balances = case.balances(&sound);
-    if balances.is_empty() {
-        let channels = case.drives.iter().flat_map(|drive| drive.measured.trace.channels());
-        let mut channels: Vec<String> = channels.map(|channel| channel.name.clone()).collect();
-        channels.sort_unstable();
-        channels.dedup();
-        return Err(DiagnoseError::NoBalance { channels });
-    }
-    let mut pools = trial::pools(&case, &balances, &case.causes)?;
-    let mut found = search_all(&case, &balances, &pools)?;
-    if sharpen(&case, &balances, &mut pools, &found)? {
-        found = search_all(&case, &balances, &pools)?;
-    }
-    let events = spells(&case, &mut balances, &mut pools, &mut found, &sound)?;
-    let mut refined = refine::refine(&case, &balances, &pools, &found)?;
-    let unproven = prove::unproven(&found, &refined);
-    refined.causes.retain(|cured| !unproven.contains(&cured.cause.id));
-    refine::spells(&case, &balances, &events, &mut refined);
-    let proof = prove::prove(&case, &balances, &refined)?;
-    report::report(&case, &balances, &found, &refined, &proof, &faults, &unproven)
+    let mut case = Case::new(scenario, recording, registry, options, progress)?;
+    let (mut faults, sound) = faults::faults(&case.runs);
+    faults.retain(|fault| case.wanted(fault.id));
+    let mut look = Look::at(&case, &sound)?;
+    sensors_first(&mut case, &mut look, &sound)?;
+    look.sharpen(&case)?;
+    let events = spells(&case, &mut look, &sound)?;
+    let Look { system, pool, found } = look;
+    let mut refined = refine::refine(&case, &system, &pool, &found)?;
+    refine::spells(&case, &system, &events, &mut refined);
+    let proof = prove::prove(&case, &system, &refined)?;
+    report::report(&case, &system, &found, &refined, &proof, &faults)
 }
 
-fn search_all(
-    case: &Case,
-    balances: &[balance::Balance],
-    pools: &[trial::Pool],
-) -> Result<Vec<Option<search::Found>>, DiagnoseError> {
-    let mut found = Vec::new();
-    for (balance, pool) in balances.iter().zip(pools) {
-        case.progress.step(balance.kind.name());
-        if case.progress.interrupted() {
-            return Err(DiagnoseError::Interrupted);
+/// The rows, the regressors and what they tell.
+struct Look {
+    system: System,
+    pool: trial::Pool,
+    found: search::Found,
+}
+
+impl Look {
+    /// Looks at samples that are `usable`.
+    fn at(case: &Case, usable: &[Vec<bool>]) -> Result<Self, DiagnoseError> {
+        let system = case.system(usable);
+        if system.kinds.is_empty() {
+            return Err(DiagnoseError::NoBalance { channels: case.channels() });
         }
-        found.push(search::search(case, balance, pool, &case.causes, &case.banned()));
+        let pool = trial::pool(case, &system)?;
+        let found = Self::search(case, &system, &pool)?;
+        Ok(Self { system, pool, found })
     }
-    Ok(found)
+
+    fn search(case: &Case, system: &System, pool: &trial::Pool) -> Result<search::Found, DiagnoseError> {
+        case.step("searching")?;
+        search::search(case, system, pool)
+            .ok_or_else(|| DiagnoseError::NoBalance { channels: case.channels() })
+    }
+
+    /// Searches once more with shapes between the points of the grids.
+    fn sharpen(&mut self, case: &Case) -> Result<(), DiagnoseError> {
+        if sharpen::sharpen(case, &self.system, &mut self.pool, &self.found)? {
+            self.found = Self::search(case, &self.system, &self.pool)?;
+        }
+        Ok(())
+    }
 }
 
-/// Adds trials at the fitted values of non-linear parameters, of the best causes that have some: what lies between the
-/// points of a grid must not be left for another cause to explain. Whether there was anything to add.
-fn sharpen(
-    case: &Case,
-    balances: &[balance::Balance],
-    pools: &mut [trial::Pool],
-    found: &[Option<search::Found>],
-) -> Result<bool, DiagnoseError> {
-    /// So many causes of a balance get the chance.
-    const MOST: usize = 3;
-    /// Those that bring at least this share of what the best one brings.
-    const CLOSE: f64 = 0.5;
-    let mut added = false;
-    for (index, found) in found.iter().enumerate() {
-        let Some(found) = found else { continue };
-        let (Some(first), Some(round)) = (found.accepted.first(), found.tried.first()) else { continue };
-        let mut chosen: Vec<&str> = Vec::new();
-        for (cause, shape, gain) in &round.causes {
-            let id = case.causes[*cause].id;
-            if shape.is_empty() || *gain < CLOSE * first.gain || chosen.len() == MOST || chosen.contains(&id)
+/// Takes the faults of sensors that were found out of the recordings, and looks again, until nothing is left of them.
+fn sensors_first(case: &mut Case, look: &mut Look, sound: &[Vec<bool>]) -> Result<(), DiagnoseError> {
+    /// A fault that is not linear takes some rounds.
+    const ROUNDS: usize = 4;
+    /// A rest that is this share of the fault, or this share of its usual size, is none.
+    const NEARLY: f64 = 0.05;
+    for _ in 0..ROUNDS {
+        let mut corrections = case.corrections.clone();
+        let mut more = false;
+        for correction in &mut corrections {
+            let column = look.pool.corrected.iter().find(|(id, _)| *id == correction.id);
+            let rest = column.map_or(0.0, |(_, column)| look.found.estimate.beta[*column]);
+            let usual = case.causes[correction.accepted.trial.cause].terms[0].scale;
+            more |= rest.abs() > NEARLY * correction.value.abs().max(usual);
+            correction.value += rest;
+        }
+        for accepted in &look.found.accepted {
+            let id = case.causes[accepted.trial.cause].id;
+            let position = look.found.used.iter().position(|used| *used == accepted.trial.columns[0]);
+            if let (true, Some(position)) =
+                (["latency", "speed_scale", "force_scale"].contains(&id), position)
             {
-                continue;
-            }
-            let trial =
-                pools[index].trials.iter().find(|trial| trial.cause == *cause && trial.shape == *shape);
-            let Some(trial) = trial.cloned() else { continue };
-            chosen.push(id);
-            let tried = search::Accepted { trial, function: None, rivals: Vec::new(), ..first.clone() };
-            let fitted = refine::shape(case, &balances[index], found, &tried)?;
-            if fitted != *shape {
-                trial::add_trial(case, balances, pools, *cause, &fitted)?;
-                added = true;
+                let value = look.found.estimate.beta[position];
+                corrections.push(Correction { id, value, accepted: accepted.clone() });
+                more = true;
             }
         }
+        if !more {
+            return Ok(());
+        }
+        case.correct(corrections)?;
+        *look = Look::at(case, sound)?;
     }
-    Ok(added)
+    Ok(())
 }
 
 /// Spells in single runs are set aside, and what every run has in common is looked for once more without them.
-fn spells(
-    case: &Case,
-    balances: &mut Vec<balance::Balance>,
-    pools: &mut Vec<trial::Pool>,
-    found: &mut Vec<Option<search::Found>>,
-    sound: &[Vec<bool>],
-) -> Result<Vec<events::Event>, DiagnoseError> {
+fn spells(case: &Case, look: &mut Look, sound: &[Vec<bool>]) -> Result<Vec<events::Event>, DiagnoseError> {
     // A function of time can imitate spells; it is looked at without.
-    let mut banned = case.banned();
-    banned.push("payload_change");
-    let mut events: Vec<events::Event> = Vec::new();
-    for ((balance, pool), found) in balances.iter().zip(pools.iter()).zip(found.iter()) {
-        let Some(found) = found else { continue };
-        let timed = found.accepted.iter().any(|one| case.causes[one.trial.cause].id == "payload_change");
-        let plain = if timed { search::search(case, balance, pool, &case.causes, &banned) } else { None };
-        events.extend(events::events(case, balance, plain.as_ref().unwrap_or(found)));
-    }
-    if events.is_empty() || !case.wanted(events::name(&case.drives, &events)) {
+    let timed = |one: &search::Accepted| {
+        let cause = &case.causes[one.trial.cause];
+        cause.id == "payload_change" && cause.is_function()
+    };
+    let events = if look.found.accepted.iter().any(timed) {
+        let plain = search::search_without(case, &look.system, &look.pool, &["payload_change"]);
+        events::events(case, &look.system, plain.as_ref().unwrap_or(&look.found))
+    } else {
+        events::events(case, &look.system, &look.found)
+    };
+    if events.is_empty() || !case.wanted(events::name(&case.runs, &events)) {
         return Ok(Vec::new());
     }
-    let mut usable = events::outside(&case.drives, &events, balance::block_s(&case.drives));
+    let mut usable = events::outside(&case.runs, &events, balance::block_s(&case.runs));
     for (usable, sound) in usable.iter_mut().zip(sound) {
         for (usable, sound) in usable.iter_mut().zip(sound) {
             *usable &= sound;
         }
     }
-    *balances = case.balances(&usable);
-    *pools = trial::pools(case, balances, &case.causes)?;
-    *found = search_all(case, balances, pools)?;
-    if sharpen(case, balances, pools, found)? {
-        *found = search_all(case, balances, pools)?;
-    }
+    *look = Look::at(case, &usable)?;
+    look.sharpen(case)?;
     Ok(events)
 }

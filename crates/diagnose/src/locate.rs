@@ -1,6 +1,6 @@
 //! Where a mismatch sits: stretches of runs in which an effect works, and conditions under which the residual differs.
 
-use crate::balance::Drive0;
+use crate::recorded::Recorded;
 use crate::report::Interval;
 
 /// An effect counts as present where it is more than this share of its greatest size.
@@ -9,7 +9,7 @@ const PRESENT: f64 = 0.3;
 const NEAR: f64 = 0.05;
 
 /// The stretches of every run in which a reconstructed effect works.
-pub fn stretches(drives: &[Drive0], runs: &[Vec<f64>]) -> Vec<Interval> {
+pub fn stretches(drives: &[Recorded], runs: &[Vec<f64>]) -> Vec<Interval> {
     let mut sizes: Vec<f64> =
         runs.iter().flatten().map(|value| value.abs()).filter(|value| value.is_finite()).collect();
     sizes.sort_by(f64::total_cmp);

@@ -3,10 +3,13 @@
 //! Two parts, found by maximum likelihood: noise of the sensors, which the weak form gives a known covariance, and a
 //! first-order autoregressive process for everything that is neither sensor nor model.
 //! Source: Rasmussen and Williams, *Gaussian Processes for Machine Learning* (2006), section 5.4 and appendix B.
+//!
+//! Whitening takes time in proportion to the rows. With T subtracting ρ times the row before, T Σ Tᵀ is zero beyond the
+//! second off-diagonal, because that turns the process into white noise; so Σ = T⁻¹ L Lᵀ T⁻ᵀ with L of three diagonals.
+//! Source: Brockwell and Davis, *Time Series: Theory and Methods* (1991), section 5.3, the innovations of an ARMA process.
 
 use crate::rows::Chunk;
 use nalgebra::{DMatrix, DVector};
-use std::collections::BTreeMap;
 
 /// How the noise of the sensor comes through the weak form.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,10 +33,24 @@ pub struct Noise {
     pub persistence: f64,
 }
 
-/// Lower triangles by which chunks of each length are whitened.
+/// What turns the rows of a chunk, of any length up to the longest, into white noise of unit variance.
+#[derive(Clone, Debug)]
 pub struct Whitener {
-    factors: BTreeMap<usize, (DMatrix<f64>, f64)>,
+    persistence: f64,
+    /// Diagonals of L, row by row: two to the left, one to the left, its own.
+    factor: Vec<[f64; 3]>,
+    /// ln |Σ| of the first rows: of none, of one, of two, …
+    log_determinants: Vec<f64>,
 }
+
+/// A touch more on the diagonal keeps differences of ever more blocks apart.
+const APART: f64 = 1e-3;
+/// Shares of the process in the variance that are tried.
+const SHARES: [f64; 8] = [0.0, 0.03, 0.1, 0.25, 0.5, 0.75, 0.93, 1.0];
+/// Correlations of the process that are tried.
+const PERSISTENCES: [f64; 6] = [0.0, 0.4, 0.7, 0.88, 0.96, 0.99];
+/// A share or correlation is refined between those that were tried, so many times halving the way.
+const REFINEMENTS: usize = 3;
 
 impl Noise {
     /// Standard deviation of a row.
@@ -41,94 +58,209 @@ impl Noise {
         (self.sensor + self.process).sqrt()
     }
 
-    fn covariance(&self, length: usize) -> DMatrix<f64> {
+    /// Variance that is not noise of the sensors, over that which is.
+    pub fn lack(&self) -> f64 {
+        /// Beyond this ratio the sensors have no part.
+        const MOST: f64 = 1e4;
+        (self.process / self.sensor.max(f64::MIN_POSITIVE)).min(MOST)
+    }
+
+    /// What whitens chunks of up to so many rows; none where the covariance is not positive.
+    pub fn whitener(&self, longest: usize) -> Option<Whitener> {
         let beside = match self.shape {
             Shape::Differenced => -0.5,
             Shape::Averaged => 0.25,
         };
-        DMatrix::from_fn(length, length, |row, column| {
-            let apart = row.abs_diff(column);
-            let sensor = match apart {
-                // A touch more on the diagonal keeps differences of ever more blocks apart.
-                0 => 1.0 + 1e-3,
-                1 => beside,
-                _ => 0.0,
+        let (rho, s0, s1) = (self.persistence, self.sensor * (1.0 + APART), self.sensor * beside);
+        // Diagonals of T Σ Tᵀ; its first row has nothing to subtract.
+        let inner = [-rho * s1, s1 * (1.0 + rho * rho) - rho * s0, s0 * (1.0 + rho * rho) - 2.0 * rho * s1];
+        let own = inner[2] + self.process * (1.0 - rho * rho);
+        let mut factor: Vec<[f64; 3]> = Vec::with_capacity(longest);
+        let mut log_determinants = vec![0.0];
+        let mut log = 0.0;
+        for row in 0..longest {
+            let (far, near, own) = match row {
+                0 => (0.0, 0.0, s0 + self.process),
+                1 => (0.0, s1 - rho * s0, own),
+                _ => (inner[0], inner[1], own),
             };
-            // Chunks are shorter than i32 reaches.
-            let apart = i32::try_from(apart).unwrap_or(i32::MAX);
-            self.sensor * sensor + self.process * self.persistence.powi(apart)
-        })
-    }
-
-    /// The factors for these chunks; none where the covariance is not positive.
-    pub fn whitener(&self, chunks: &[Chunk]) -> Option<Whitener> {
-        let mut factors = BTreeMap::new();
-        for chunk in chunks {
-            let length = chunk.rows.len();
-            if let std::collections::btree_map::Entry::Vacant(entry) = factors.entry(length) {
-                let factor = self.covariance(length).cholesky()?.unpack();
-                let log_determinant = 2.0 * factor.diagonal().iter().map(|value| value.ln()).sum::<f64>();
-                entry.insert((factor, log_determinant));
+            let before = |back: usize| row.checked_sub(back).map_or([0.0, 0.0, 1.0], |place| factor[place]);
+            let (one, two) = (before(1), before(2));
+            let left2 = far / two[2];
+            let left1 = (near - left2 * one[1]) / one[2];
+            let square = own - left1 * left1 - left2 * left2;
+            if square.is_nan() || square <= 0.0 {
+                return None;
             }
+            factor.push([left2, left1, square.sqrt()]);
+            log += square.ln();
+            log_determinants.push(log);
         }
-        Some(Whitener { factors })
+        Some(Whitener { persistence: rho, factor, log_determinants })
     }
 
     /// The noise that makes residuals (one vector a chunk) most likely.
-    pub fn of(shape: Shape, chunks: &[Chunk], residuals: &[DVector<f64>]) -> Self {
-        const SHARES: [f64; 8] = [0.0, 0.03, 0.1, 0.25, 0.5, 0.75, 0.93, 1.0];
-        const PERSISTENCES: [f64; 6] = [0.0, 0.4, 0.7, 0.88, 0.96, 0.99];
-        let count: usize = residuals.iter().map(DVector::len).sum();
-        let mut best = Self { shape, sensor: 1.0, process: 0.0, persistence: 0.0 };
-        let mut least = f64::INFINITY;
+    pub fn of(shape: Shape, residuals: &[&DVector<f64>]) -> Self {
+        let nothing = Self { shape, sensor: 1.0, process: 0.0, persistence: 0.0 };
+        let mut best = (f64::INFINITY, nothing);
+        let mut place = (0.0, 0.0);
+        let mut consider = |share: f64, persistence: f64, place: &mut (f64, f64)| {
+            if let Some(tried) = Self::with(shape, share, persistence, residuals)
+                && tried.0 < best.0
+            {
+                best = tried;
+                *place = (share, persistence);
+            }
+        };
         for share in SHARES {
             for persistence in PERSISTENCES {
-                if share == 0.0 && persistence > 0.0 {
-                    continue;
-                }
-                let unit = Self { shape, sensor: 1.0 - share, process: share, persistence };
-                let Some(whitener) = unit.whitener(chunks) else { continue };
-                let mut sum = 0.0;
-                let mut log_determinant = 0.0;
-                for (chunk, residual) in chunks.iter().zip(residuals) {
-                    sum += whitener.whiten(chunk, residual).norm_squared();
-                    log_determinant += whitener.log_determinant(chunk);
-                }
-                let variance = (sum / count as f64).max(f64::MIN_POSITIVE);
-                let deviance = count as f64 * variance.ln() + log_determinant;
-                if deviance < least {
-                    least = deviance;
-                    best = Self {
-                        shape,
-                        sensor: variance * unit.sensor,
-                        process: variance * unit.process,
-                        persistence,
-                    };
+                if share > 0.0 || persistence == 0.0 {
+                    consider(share, persistence, &mut place);
                 }
             }
         }
-        best
+        // Half way to the neighbours, then a quarter of the way, …
+        let near = |grid: &[f64], value: f64| {
+            let above = grid.iter().copied().find(|one| *one > value).unwrap_or(value);
+            let below = grid.iter().rev().copied().find(|one| *one < value).unwrap_or(value);
+            (value - below, above - value)
+        };
+        let mut share_way = near(&SHARES, place.0);
+        let mut persistence_way = near(&PERSISTENCES, place.1);
+        for _ in 0..REFINEMENTS {
+            (share_way.0, share_way.1) = (0.5 * share_way.0, 0.5 * share_way.1);
+            (persistence_way.0, persistence_way.1) = (0.5 * persistence_way.0, 0.5 * persistence_way.1);
+            let (share, persistence) = place;
+            for share in [share - share_way.0, share, share + share_way.1] {
+                for persistence in
+                    [persistence - persistence_way.0, persistence, persistence + persistence_way.1]
+                {
+                    if share > 0.0 {
+                        consider(share, persistence, &mut place);
+                    }
+                }
+            }
+        }
+        best.1
+    }
+
+    /// Deviance of residuals at a share and a correlation, with the variance that suits best.
+    fn with(shape: Shape, share: f64, persistence: f64, residuals: &[&DVector<f64>]) -> Option<(f64, Self)> {
+        let unit = Self { shape, sensor: 1.0 - share, process: share, persistence };
+        let whitener = unit.whitener(residuals.iter().map(|one| one.len()).max()?)?;
+        let (mut sum, mut log_determinant, mut count) = (0.0, 0.0, 0usize);
+        for residual in residuals {
+            sum += whitener.norm_squared(residual.as_slice());
+            log_determinant += whitener.log_determinant(residual.len());
+            count += residual.len();
+        }
+        let variance = (sum / count as f64).max(f64::MIN_POSITIVE);
+        let deviance = count as f64 * variance.ln() + log_determinant;
+        let noise =
+            Self { shape, sensor: variance * unit.sensor, process: variance * unit.process, persistence };
+        deviance.is_finite().then_some((deviance, noise))
     }
 }
 
 impl Whitener {
-    /// L⁻¹ x for one chunk.
-    pub fn whiten(&self, chunk: &Chunk, values: &DVector<f64>) -> DVector<f64> {
-        match self.factors.get(&chunk.rows.len()) {
-            Some((factor, _)) => factor.solve_lower_triangular(values).unwrap_or_else(|| values.clone()),
-            None => values.clone(),
+    fn each(&self, values: &[f64], mut take: impl FnMut(usize, f64)) {
+        let (mut before, mut one, mut two) = (0.0, 0.0, 0.0);
+        for (row, (value, [left2, left1, own])) in values.iter().zip(&self.factor).enumerate() {
+            let white = (value - self.persistence * before - left1 * one - left2 * two) / own;
+            (before, two, one) = (*value, one, white);
+            take(row, white);
         }
     }
 
-    /// L⁻¹ X for one chunk.
-    pub fn whiten_all(&self, chunk: &Chunk, values: &mut DMatrix<f64>) {
-        if let Some((factor, _)) = self.factors.get(&chunk.rows.len()) {
-            factor.solve_lower_triangular_mut(values);
+    fn norm_squared(&self, values: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        self.each(values, |_, white| sum += white * white);
+        sum
+    }
+
+    /// L⁻¹ T x.
+    pub fn whiten(&self, values: &DVector<f64>) -> DVector<f64> {
+        let mut all = DVector::zeros(values.len());
+        self.each(values.as_slice(), |row, white| all[row] = white);
+        all
+    }
+
+    /// L⁻¹ T X, column by column.
+    pub fn whiten_all(&self, values: &mut DMatrix<f64>) {
+        for mut column in values.column_iter_mut() {
+            let own: Vec<f64> = column.iter().copied().collect();
+            self.each(&own, |row, white| column[row] = white);
         }
     }
 
-    /// ln |Σ| of one chunk.
-    pub fn log_determinant(&self, chunk: &Chunk) -> f64 {
-        self.factors.get(&chunk.rows.len()).map_or(0.0, |(_, value)| *value)
+    /// ln |Σ| of so many rows.
+    pub fn log_determinant(&self, rows: usize) -> f64 {
+        self.log_determinants[rows.min(self.log_determinants.len() - 1)]
+    }
+}
+
+/// The noise of several balances side by side, in the order of their numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Noises(pub Vec<Noise>);
+
+/// What whitens the chunks of several balances.
+#[derive(Clone, Debug)]
+pub struct Whiteners(Vec<Whitener>);
+
+impl Noises {
+    /// What whitens these chunks.
+    pub fn whiteners(&self, chunks: &[Chunk]) -> Option<Whiteners> {
+        let longest = chunks.iter().map(|chunk| chunk.rows.len()).max().unwrap_or(0);
+        self.0.iter().map(|noise| noise.whitener(longest)).collect::<Option<_>>().map(Whiteners)
+    }
+}
+
+impl Whiteners {
+    /// That of a chunk's balance.
+    pub fn of(&self, chunk: &Chunk) -> &Whitener {
+        &self.0[chunk.balance]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn covariance(noise: &Noise, length: i32) -> DMatrix<f64> {
+        let beside = if noise.shape == Shape::Differenced { -0.5 } else { 0.25 };
+        let rows = usize::try_from(length).unwrap();
+        DMatrix::from_fn(rows, rows, |row, column| {
+            let apart = i32::try_from(row.abs_diff(column)).unwrap();
+            let sensor = [1.0 + APART, beside].get(row.abs_diff(column)).copied().unwrap_or(0.0);
+            noise.sensor * sensor + noise.process * noise.persistence.powi(apart)
+        })
+    }
+
+    #[test]
+    fn three_diagonals_whiten_as_the_dense_covariance_does() {
+        for shape in [Shape::Differenced, Shape::Averaged] {
+            for (sensor, process, persistence) in [(2.0, 0.0, 0.0), (1.0, 0.7, 0.9), (0.0, 3.0, 0.6)] {
+                let noise = Noise { shape, sensor, process, persistence };
+                let dense = covariance(&noise, 9);
+                let values = DVector::from_fn(9, |row, _| (1.7 * row as f64).sin() + 0.3);
+                let expected = (values.transpose() * dense.clone().try_inverse().unwrap() * &values)[(0, 0)];
+                let whitener = noise.whitener(20).unwrap();
+                let white = whitener.whiten(&values).norm_squared();
+                assert!((white / expected - 1.0).abs() < 1e-9, "{white} against {expected}");
+                assert!((whitener.log_determinant(9) - dense.determinant().ln()).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn the_noise_that_made_a_residual_is_found_again() {
+        let made = Noise { shape: Shape::Differenced, sensor: 4.0, process: 1.0, persistence: 0.8 };
+        let factor = covariance(&made, 140).cholesky().unwrap().unpack();
+        let mut draws = headland_calibrate::statistics::Draws::new(5, 0);
+        let all: Vec<DVector<f64>> =
+            (0..40).map(|_| &factor * DVector::from_fn(140, |_, _| draws.normal())).collect();
+        let found = Noise::of(Shape::Differenced, &all.iter().collect::<Vec<_>>());
+        assert!((found.sensor / 4.0 - 1.0).abs() < 0.15, "{found:?}");
+        assert!((found.process - 1.0).abs() < 0.4 && (found.persistence - 0.8).abs() < 0.12, "{found:?}");
     }
 }

@@ -5,8 +5,11 @@
 //! Each path (or run) has knots of its own, which are eliminated before anything else is estimated.
 //! Source: Rasmussen and Williams, *Gaussian Processes for Machine Learning* (2006), sections 2.7 and B.2.1.
 
+use crate::balance::System;
+use crate::catalogue::Form;
 use crate::gram::{Column, Reduced, Whitened};
-use crate::rows::Chunk;
+use crate::recorded::Recorded;
+use crate::rows::{Chunk, Row};
 use nalgebra::{DMatrix, DVector};
 
 /// How a function is spread over knots.
@@ -57,7 +60,48 @@ const MOST_KNOTS: f64 = 240.0;
 /// Knots to one length of the process.
 const KNOTS_PER_LENGTH: f64 = 2.0;
 
-impl Profile<'_> {
+impl<'a> Profile<'a> {
+    /// A function of the position or of time, with what a parameter of one does to each row.
+    pub fn new(system: &System, runs: &[Recorded], form: Form, signature: &'a Column) -> Self {
+        let over_position = form == Form::OverPosition;
+        let group_of: Vec<usize> =
+            if over_position { runs.iter().map(|run| run.path).collect() } else { (0..runs.len()).collect() };
+        let groups = group_of.iter().max().map_or(0, |most| most + 1);
+        let mut extents = vec![(f64::INFINITY, f64::NEG_INFINITY); groups];
+        let of_chunk = |chunk: &Chunk| {
+            let place = |row: &Row| {
+                let at = if over_position { row.mean(&runs[chunk.run].position_m) } else { row.time_s };
+                if at.is_finite() { at } else { 0.0 }
+            };
+            let at = DVector::from_iterator(chunk.rows.len(), chunk.rows.iter().map(place));
+            let extent = &mut extents[group_of[chunk.run]];
+            *extent = (extent.0.min(at.min()), extent.1.max(at.max()));
+            at
+        };
+        let at: Column = system.chunks.iter().map(of_chunk).collect();
+        for extent in &mut extents {
+            if !extent.0.is_finite() {
+                *extent = (0.0, 1.0);
+            }
+        }
+        Self { signature, at, group_of, extents }
+    }
+
+    /// What the function does to every row.
+    pub fn rows(&self, system: &System, function: &Function) -> Column {
+        let of_chunk = |(index, chunk): (usize, &Chunk)| {
+            let group = self.group_of[chunk.run];
+            self.signature[index]
+                .zip_map(&self.at[index], |signature, at| signature * function.value(group, at))
+        };
+        system.chunks.iter().enumerate().map(of_chunk).collect()
+    }
+
+    /// Longest stretch that a group covers [m or s].
+    pub fn longest(&self) -> f64 {
+        self.extents.iter().map(|(from, to)| to - from).fold(0.0, f64::max)
+    }
+
     /// The knots of every group.
     pub fn groups(&self, spread: &Spread) -> Vec<Group> {
         self.extents
@@ -152,7 +196,7 @@ impl Profile<'_> {
             }
             any = true;
             let (first, mut basis) = self.basis(index, chunk, group);
-            whitened.whitener.whiten_all(chunk, &mut basis);
+            whitened.whiteners.of(chunk).whiten_all(&mut basis);
             let own = basis.transpose() * &basis;
             let with = basis.transpose() * &whitened.chunks[index];
             let local = basis.ncols();
@@ -196,6 +240,14 @@ fn knot(group: &Group, at: f64) -> (usize, f64) {
 }
 
 impl Function {
+    /// The function and a value that it has everywhere beside.
+    pub fn raised(mut self, by: f64) -> Self {
+        for (values, _) in &mut self.values {
+            values.add_scalar_mut(by);
+        }
+        self
+    }
+
     /// Its value somewhere.
     pub fn value(&self, group: usize, at: f64) -> f64 {
         let (left, share) = knot(&self.groups[group], at);

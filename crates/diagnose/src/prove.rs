@@ -1,11 +1,14 @@
 //! Before and after, on runs that were fitted and on runs that were not.
 
-use crate::balance::{Balance, Drive0, Kind, Said, forward};
-use crate::catalogue::{Cause, Class, Form};
+use crate::balance::{FUEL_J_KG, Kind, System, change};
+use crate::catalogue::{Class, Form};
 use crate::events::Event;
+use crate::gram::Column;
+use crate::recorded::Recorded;
 use crate::refine::{Cured, Refined, said_with_all};
-use crate::search::Found;
-use crate::trial::{corrected, for_run};
+use crate::said::Said;
+use crate::sensors::corrected;
+use crate::trial::for_run;
 use crate::{Case, DiagnoseError};
 use headland_scenario::Scenario;
 use headland_sim::{Replay, replay};
@@ -48,25 +51,22 @@ pub struct Proof {
 }
 
 /// Makes the proof.
-pub fn prove(case: &Case, balances: &[Balance], refined: &Refined) -> Result<Proof, DiagnoseError> {
-    case.progress.step("proving");
-    let artefacts: Vec<&Cured> =
-        refined.causes.iter().filter(|cured| cured.cause.class == Class::Artefact).collect();
-    let mut drives = case.drives.clone();
-    for cured in &artefacts {
-        if let Some((value, _)) = cured.values.first() {
-            drives = corrected(&drives, cured.cause.id, *value)?;
-        }
+pub fn prove(case: &Case, system: &System, refined: &Refined) -> Result<Proof, DiagnoseError> {
+    case.step("proving")?;
+    let mut runs = case.raw.clone();
+    for (id, value) in refined.artefacts() {
+        runs = corrected(&runs, id, value)?;
     }
     let effects = refined
         .causes
         .iter()
-        .map(|cured| reconstruct(case, balances, cured, refined))
+        .map(|cured| reconstruct(case, system, cured, refined))
         .collect::<Result<Vec<_>, _>>()?;
-    let signal = signal(case, balances, refined);
-    let (errors, noise) = match signal {
-        "speed_m_s" => speeds(case, balances, &drives, refined)?,
-        _ => rows(case, balances, &drives, refined, &effects, signal)?,
+    let kind = told_by(system, refined);
+    let (errors, noise) = if kind == Kind::Motion {
+        (speeds(case, &runs, refined)?, speed_noise(case))
+    } else {
+        (rows(case, system, &runs, refined, &effects, kind)?, f64::NAN)
     };
     let over = |wanted: bool| {
         let chosen: Vec<&Errors> = errors
@@ -84,17 +84,17 @@ pub fn prove(case: &Case, balances: &[Balance], refined: &Refined) -> Result<Pro
     };
     let mut paths: Vec<usize> = Vec::new();
     let mut scenarios = Vec::new();
-    for (run, drive) in case.drives.iter().enumerate() {
-        if !paths.contains(&drive.path) {
-            paths.push(drive.path);
-            scenarios.push((drive.path, improved(case, refined, run)?.document().text().to_owned()));
+    for (place, run) in case.runs.iter().enumerate() {
+        if !paths.contains(&run.path) {
+            paths.push(run.path);
+            scenarios.push((run.path, improved(case, refined, place)?.document().text().to_owned()));
         }
         if !by_path(refined) {
             break;
         }
     }
     Ok(Proof {
-        signal,
+        signal: kind.signal(),
         fitted: over(true).unwrap_or_default(),
         held_out: over(false),
         noise,
@@ -104,24 +104,14 @@ pub fn prove(case: &Case, balances: &[Balance], refined: &Refined) -> Result<Pro
 }
 
 fn by_path(refined: &Refined) -> bool {
-    refined.causes.iter().any(|cured| cured.function.is_some() || !cured.events.is_empty())
+    refined.causes.iter().any(|cured| cured.function().is_some() || !cured.events.is_empty())
 }
 
-/// The signal by which before and after are told.
-fn signal(case: &Case, balances: &[Balance], refined: &Refined) -> &'static str {
-    let found = refined.causes.first().map(|cured| balances[cured.balance].kind);
-    let kind = found.unwrap_or_else(|| {
-        let motion = balances.iter().find(|balance| balance.kind == Kind::Motion);
-        motion.or(balances.first()).map_or(Kind::Motion, |balance| balance.kind)
-    });
-    let _ = case;
-    match kind {
-        Kind::Motion | Kind::Shaft => "speed_m_s",
-        Kind::Parity => "specific_force_m_s2",
-        Kind::Slip => "wheel_speed_m_s",
-        Kind::Battery => "battery_power_w",
-        Kind::Fuel => "fuel_rate_kg_s",
-    }
+/// The balance whose signal tells before and after: that of what was found first, and else that of motion.
+fn told_by(system: &System, refined: &Refined) -> Kind {
+    let found = refined.causes.first().map(|cured| system.kinds[cured.accepted.balance]);
+    let motion = system.has(Kind::Motion).then_some(Kind::Motion);
+    found.or(motion).or(system.kinds.first().copied()).unwrap_or(Kind::Motion)
 }
 
 /// The scenario with everything that was found, for one run.
@@ -143,52 +133,39 @@ fn text(case: &Case, cured: &Cured, run: usize) -> Option<String> {
     if cured.cause.class == Class::Artefact {
         return None;
     }
-    let drive = &case.drives[run];
+    let drive = &case.runs[run];
     if !cured.events.is_empty() {
         let own: Vec<&Event> = cured.events.iter().filter(|event| event.run == run).collect();
         return (!own.is_empty()).then(|| spelt(cured.cause.id, &own));
     }
-    let Some(function) = &cured.function else {
-        let values: Vec<f64> = cured.values.iter().map(|(value, _)| *value).collect();
-        return Some(for_run(&cured.cause.written(&values), &cured.cause, drive));
+    let Some(function) = cured.function() else {
+        return Some(for_run(&cured.cause.written(&cured.values()), &cured.cause, drive));
     };
     let over_position = cured.cause.form == Form::OverPosition;
-    if !over_position && !case.fit[run] {
-        // A function of time is that of its own run.
-        return None;
-    }
     let group = if over_position { drive.path } else { run };
     let knots = function.knots(group);
     let values: Vec<f64> = function.values[group].0.iter().copied().collect();
     let list =
         |values: &[f64]| values.iter().map(|value| format!("{value:.6?}")).collect::<Vec<_>>().join(", ");
-    let edges = |knots: &[f64]| {
-        // Steps change half way between knots.
-        let mut edges: Vec<f64> = knots.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
-        if let [first, second, ..] = knots {
-            edges.insert(0, 1.5 * first - 0.5 * second);
-        }
-        edges
+    // Steps change half way between knots, and begin and end half a step beyond them.
+    let edges = |knots: &[f64]| -> Vec<f64> {
+        let middles = knots.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+        let [first, second, ..] = knots else { return Vec::new() };
+        let step = second - first;
+        std::iter::once(first - 0.5 * step)
+            .chain(middles)
+            .chain(knots.last().map(|last| last + 0.5 * step))
+            .collect()
     };
     Some(match cured.cause.id {
         "grade" => format!("grade(positions_m: [{}], grades: [{}])", list(&knots), list(&values)),
         "soft_ground" => {
-            let mut edges = edges(&knots);
-            if let (Some(last), Some(before)) = (knots.last(), knots.iter().rev().nth(1)) {
-                edges.push(1.5 * last - 0.5 * before);
-            }
-            format!("soft_ground(positions_m: [{}], coefficients: [{}])", list(&edges), list(&values))
+            format!("soft_ground(positions_m: [{}], coefficients: [{}])", list(&edges(&knots)), list(&values))
         }
         "payload_change" => {
             format!("payload_change(times_s: [{}], masses_kg: [{}])", list(&knots), list(&values))
         }
-        _ => {
-            let mut edges = edges(&knots);
-            if let (Some(last), Some(before)) = (knots.last(), knots.iter().rev().nth(1)) {
-                edges.push(1.5 * last - 0.5 * before);
-            }
-            format!("auxiliary_power(times_s: [{}], powers_w: [{}])", list(&edges), list(&values))
-        }
+        _ => format!("auxiliary_power(times_s: [{}], powers_w: [{}])", list(&edges(&knots)), list(&values)),
     })
 }
 
@@ -217,127 +194,129 @@ fn spelt(id: &str, events: &[&Event]) -> String {
 /// What an effect does along every run.
 fn reconstruct(
     case: &Case,
-    balances: &[Balance],
+    system: &System,
     cured: &Cured,
     refined: &Refined,
 ) -> Result<Reconstructed, DiagnoseError> {
-    let balance = &balances[cured.balance];
-    let unit = match (cured.cause.class, balance.kind) {
-        (_, Kind::Motion) => "n",
-        (_, Kind::Battery | Kind::Fuel | Kind::Shaft) => "w",
-        (_, Kind::Slip) => "m_s",
-        (_, Kind::Parity) => "m_s2",
+    let id = cured.cause.id;
+    if cured.cause.class == Class::Artefact {
+        let value = cured.values.first().map_or(0.0, |(value, _)| *value);
+        return sensor_error(case, id, value);
+    }
+    let kind = system.kinds[cured.accepted.balance];
+    let unit = match kind {
+        Kind::Motion => "n",
+        Kind::Battery | Kind::Fuel => "w",
+        Kind::Slip => "m_s",
+        Kind::Parity if system.has(Kind::Motion) => "n",
+        Kind::Parity => "m_s2",
     };
+    // What shows in the accelerometer is a force to the vehicle as well.
+    let kind = if unit == "n" { Kind::Motion } else { kind };
     let values = refined.values();
     let bare = case.said(case.study.scenario(), &values)?;
     // Forces are told forward, as in every trace: what resists is negative. Powers are what is taken.
     let way = if unit == "n" { 1.0 } else { -1.0 };
-    let negated = |before: &[Said], after: &[Said]| -> Vec<Vec<f64>> {
-        case.drives
-            .iter()
-            .zip(before.iter().zip(after))
-            .map(|(drive, (before, after))| {
-                let change = crate::balance::change(balance.kind, drive, before, after);
-                change.iter().map(|value| way * value).collect()
-            })
-            .collect()
+    let told = |after: &[Said]| -> Vec<Vec<f64>> {
+        let of_run = |(run, (before, after)): (&Recorded, (&Said, &Said))| {
+            change(kind, run, before, after).iter().map(|value| way * value).collect()
+        };
+        case.runs.iter().zip(bare.iter().zip(after)).map(of_run).collect()
     };
     let runs = if !cured.events.is_empty() {
-        let of_run = |(run, drive): (usize, &Drive0)| -> Vec<f64> {
+        let of_run = |(run, recorded): (usize, &Recorded)| -> Vec<f64> {
             let own: Vec<&Event> = cured.events.iter().filter(|event| event.run == run).collect();
             let at = |time: &f64| {
-                -own.iter()
-                    .filter(|event| (event.from_s..event.to_s).contains(time))
-                    .map(|event| event.force_n)
-                    .sum::<f64>()
+                let inside = own.iter().filter(|event| (event.from_s..event.to_s).contains(time));
+                -inside.map(|event| event.force_n).sum::<f64>()
             };
-            drive.measured.trace.time_s().iter().map(at).collect()
+            recorded.measured.trace.time_s().iter().map(at).collect()
         };
-        case.drives.iter().enumerate().map(of_run).collect()
-    } else if cured.cause.class == Class::Artefact {
-        let value = cured.values.first().map_or(0.0, |(value, _)| *value);
-        let fixed = corrected(&case.drives, cured.cause.id, value)?;
-        let after = case.said_of(&fixed, case.study.scenario(), &values)?;
-        negated(&bare, &after)
-    } else if let Some(function) = &cured.function {
-        let unit_text = |_: &Drive0| match cured.cause.id {
-            "grade" => "grade_constant(grade: 0.01)".to_owned(),
-            "soft_ground" => "rolling_resistance(coefficient: 0.01)".to_owned(),
-            "payload_change" => "mass(extra_mass_kg: 0.01)".to_owned(),
-            _ => "auxiliary_power(power_w: 0.01)".to_owned(),
-        };
-        let after = case.said_with(&unit_text, &values)?;
-        let mut series = negated(&bare, &after);
-        for (run, (samples, drive)) in series.iter_mut().zip(&case.drives).enumerate() {
-            let time_s = drive.measured.trace.time_s();
+        case.runs.iter().enumerate().map(of_run).collect()
+    } else if let Some(function) = cured.function() {
+        let even = cured.cause.terms[0].scale;
+        let after = case.said_with(&|_: &Recorded| cured.cause.constant(even), &values, &[kind])?;
+        let mut series = told(&after);
+        for (run, (samples, recorded)) in series.iter_mut().zip(&case.runs).enumerate() {
+            let time_s = recorded.measured.trace.time_s();
             for (index, sample) in samples.iter_mut().enumerate() {
                 let value = if cured.cause.form == Form::OverPosition {
-                    function.value(drive.path, drive.position_m[index])
+                    function.value(recorded.path, recorded.position_m[index])
                 } else {
                     function.value(run, time_s[index])
                 };
-                *sample *= 100.0 * value;
+                *sample *= value / even;
             }
         }
         series
     } else {
-        let values_of: Vec<f64> = cured.values.iter().map(|(value, _)| *value).collect();
-        let effects: Vec<(Cause, Vec<f64>)> = vec![(cured.cause.clone(), values_of)];
-        let after = said_with_all(case, &case.drives, &effects, &values)?;
-        negated(&bare, &after)
+        let effects = vec![(cured.cause.clone(), cured.values())];
+        told(&said_with_all(case, &case.runs, &effects, &values)?)
     };
-    Ok(Reconstructed { id: cured.cause.id, unit, runs })
+    Ok(Reconstructed { id, unit, runs })
+}
+
+/// What a sensor's fault adds to its channel.
+fn sensor_error(case: &Case, id: &'static str, value: f64) -> Result<Reconstructed, DiagnoseError> {
+    const CHANNELS: [(&str, &str); 5] = [
+        ("speed_m_s", "m_s"),
+        ("wheel_speed_m_s", "m_s"),
+        ("specific_force_m_s2", "m_s2"),
+        ("tractive_force_n", "n"),
+        ("motor_torque_n_m", "n_m"),
+    ];
+    let fixed = corrected(&case.raw, id, value)?;
+    let differs = |name: &str| {
+        let pairs = case.raw.iter().zip(&fixed);
+        pairs.into_iter().any(|(one, other)| one.measured.trace.get(name) != other.measured.trace.get(name))
+    };
+    let (name, unit) = CHANNELS.into_iter().find(|(name, _)| differs(name)).unwrap_or(CHANNELS[0]);
+    let runs = case.raw.iter().zip(&fixed).map(|(raw, fixed)| {
+        match (raw.measured.trace.get(name), fixed.measured.trace.get(name)) {
+            (Some(raw), Some(fixed)) => raw.iter().zip(fixed).map(|(raw, fixed)| raw - fixed).collect(),
+            _ => vec![f64::NAN; raw.measured.trace.len()],
+        }
+    });
+    Ok(Reconstructed { id, unit, runs: runs.collect() })
 }
 
 /// Longest window in which a long run is driven forward [s].
 const WINDOW_S: f64 = 30.0;
 
-fn speeds(
-    case: &Case,
-    balances: &[Balance],
-    drives: &[Drive0],
-    refined: &Refined,
-) -> Result<(Vec<Errors>, f64), DiagnoseError> {
-    let errors = (0..drives.len())
+/// Errors of the speed, driven forward with the nominal scenario and with what was found.
+fn speeds(case: &Case, runs: &[Recorded], refined: &Refined) -> Result<Vec<Errors>, DiagnoseError> {
+    let rmse = |model: &headland_sim::Model, run: &Recorded, how: &Replay| -> Result<f64, DiagnoseError> {
+        let failed = |error| DiagnoseError::Replay { run: run.measured.id.clone(), error };
+        let modelled = replay(model, &run.measured.trace, how).map_err(failed)?.trace;
+        let measured = run.measured.trace.get("speed_m_s").unwrap_or(&[]);
+        let speeds = modelled.get("speed_m_s").unwrap_or(&[]).iter().zip(measured);
+        let squares: Vec<f64> =
+            speeds.map(|(one, other)| (one - other).powi(2)).filter(|value| value.is_finite()).collect();
+        Ok((squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt())
+    };
+    (0..runs.len())
         .into_par_iter()
-        .map(|run| {
-            let (before, after) = (&case.drives[run], &drives[run]);
-            let Some(drive) = forward(after) else { return Ok(Errors { before: f64::NAN, after: f64::NAN }) };
+        .map(|place| {
+            let (before, after) = (&case.raw[place], &runs[place]);
+            let Some(drive) = after.forward() else {
+                return Ok(Errors { before: f64::NAN, after: f64::NAN });
+            };
             let nominal = case.study.model(&before.measured, &case.study.priors())?;
-            let scenario = improved(case, refined, run)?;
+            let scenario = improved(case, refined, place)?;
             let cured = case.study.model_of(&scenario, &after.measured, &refined.values())?;
             let long = after.measured.trace.duration_s() > 2.0 * WINDOW_S;
-            let how = Replay {
-                drive,
-                window_s: after.measured.how.window_s.or(long.then_some(WINDOW_S)),
-                ..after.measured.how.clone()
-            };
-            let rmse = |model: &headland_sim::Model, drive: &Drive0| -> Result<f64, DiagnoseError> {
-                let failed = |error| DiagnoseError::Replay { run: drive.measured.id.clone(), error };
-                let modelled = replay(model, &drive.measured.trace, &how).map_err(failed)?.trace;
-                let measured = drive.measured.trace.get("speed_m_s").unwrap_or(&[]);
-                let squares: Vec<f64> = modelled
-                    .get("speed_m_s")
-                    .unwrap_or(&[])
-                    .iter()
-                    .zip(measured)
-                    .map(|(one, other)| (one - other).powi(2))
-                    .filter(|value| value.is_finite())
-                    .collect();
-                Ok((squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt())
-            };
-            Ok(Errors { before: rmse(&nominal, before)?, after: rmse(&cured, after)? })
+            let window_s = after.measured.how.window_s.or(long.then_some(WINDOW_S));
+            let how = Replay { drive, window_s, ..after.measured.how.clone() };
+            Ok(Errors { before: rmse(&nominal, before, &how)?, after: rmse(&cured, after, &how)? })
         })
-        .collect::<Result<Vec<Errors>, DiagnoseError>>()?;
-    let _ = balances;
-    Ok((errors, speed_noise(case)))
+        .collect()
 }
 
 /// What the description says of the speed sensor, or the scatter about the local fit.
 fn speed_noise(case: &Case) -> f64 {
     let mut squares = 0.0;
     let mut count = 0usize;
-    for drive in &case.drives {
+    for drive in &case.raw {
         if let Some(speed) = drive.measured.trace.get("speed_m_s") {
             for (measured, smooth) in speed.iter().zip(&drive.motion.value) {
                 let error = (measured - smooth).powi(2);
@@ -354,60 +333,47 @@ fn speed_noise(case: &Case) -> f64 {
 /// Errors of the rows of a balance, for signals that are not driven forward.
 fn rows(
     case: &Case,
-    balances: &[Balance],
-    drives: &[Drive0],
+    system: &System,
+    runs: &[Recorded],
     refined: &Refined,
     effects: &[Reconstructed],
-    signal: &str,
-) -> Result<(Vec<Errors>, f64), DiagnoseError> {
-    let kind = match signal {
-        "battery_power_w" => Kind::Battery,
-        "fuel_rate_kg_s" => Kind::Fuel,
-        "wheel_speed_m_s" => Kind::Slip,
-        _ => Kind::Parity,
-    };
-    let unit = if kind == Kind::Fuel { 1.0 / crate::balance::FUEL_J_KG } else { 1.0 };
-    let Some((index, balance)) = balances.iter().enumerate().find(|(_, balance)| balance.kind == kind) else {
-        return Ok((vec![Errors { before: f64::NAN, after: f64::NAN }; case.drives.len()], f64::NAN));
-    };
-    let said = case.said_of(drives, case.study.scenario(), &refined.values())?;
-    let mut after = balance.residual_of(drives, &said);
+    kind: Kind,
+) -> Result<Vec<Errors>, DiagnoseError> {
+    let unit = if kind == Kind::Fuel { 1.0 / FUEL_J_KG } else { 1.0 };
+    let said = case.said_of(runs, case.study.scenario(), &refined.values())?;
+    let mut after = system.residual_of(runs, &said);
     for (cured, effect) in refined.causes.iter().zip(effects) {
-        if cured.balance != index || cured.cause.class == Class::Artefact {
+        if system.kinds[cured.accepted.balance] != kind || cured.cause.class == Class::Artefact {
             continue;
         }
-        let timed = cured.cause.form == Form::OverTime;
-        let column = crate::balance::column(&balance.chunks, &effect.runs);
-        for ((left, column), chunk) in after.iter_mut().zip(&column).zip(&balance.chunks) {
-            if !timed || case.fit[chunk.run] {
-                *left -= column;
+        let mass =
+            |run: usize| case.nominal[run].effective_mass_kg.iter().find(|mass| mass.is_finite()).copied();
+        let column = system.column(|own| match (own == kind, effect.unit) {
+            (false, _) => vec![Vec::new(); case.runs.len()],
+            // A slope is told as a force, and read by the accelerometer as one per mass, the other way round.
+            (true, "n") if kind == Kind::Parity => {
+                let of_run = |(run, values): (usize, &Vec<f64>)| {
+                    values.iter().map(|value| -value / mass(run).unwrap_or(f64::INFINITY)).collect()
+                };
+                effect.runs.iter().enumerate().map(of_run).collect()
             }
+            (true, _) => effect.runs.clone(),
+        });
+        for (left, column) in after.iter_mut().zip(&column) {
+            *left -= column;
         }
     }
-    let mut errors = Vec::new();
-    for run in 0..case.drives.len() {
-        let of = |column: &crate::gram::Column| {
-            let (mut sum, mut count) = (0.0, 0usize);
-            for (chunk, values) in balance.chunks.iter().zip(column).filter(|(chunk, _)| chunk.run == run) {
+    let of = |run: usize, column: &Column| {
+        let (mut sum, mut count) = (0.0, 0usize);
+        for (chunk, values) in system.chunks.iter().zip(column) {
+            if chunk.run == run && system.kind(chunk) == kind {
                 sum += values.norm_squared();
-                count += chunk.rows.len();
+                count += values.len();
             }
-            if count == 0 { f64::NAN } else { unit * (sum / count as f64).sqrt() }
-        };
-        errors.push(Errors { before: of(&balance.residual), after: of(&after) });
-    }
-    Ok((errors, f64::NAN))
-}
-
-/// Causes of balances that become worse on the runs that were held out. What is a function of time belongs to its own
-/// run, and no other can show it.
-pub fn unproven(found: &[Option<Found>], refined: &Refined) -> Vec<&'static str> {
-    /// A cause may only relieve a free parameter that was pushed beyond its prior; that need not show in other runs. It
-    /// must not harm them.
-    const HARM: f64 = -3.0;
-    let fails = |cured: &&Cured| {
-        let gain = found[cured.balance].as_ref().and_then(|found| found.held_out_gain);
-        cured.cause.form != Form::OverTime && gain.is_some_and(|gain| gain < HARM)
+        }
+        if count == 0 { f64::NAN } else { unit * (sum / count as f64).sqrt() }
     };
-    refined.causes.iter().filter(fails).map(|cured| cured.cause.id).collect()
+    Ok((0..case.runs.len())
+        .map(|run| Errors { before: of(run, &system.residual), after: of(run, &after) })
+        .collect())
 }

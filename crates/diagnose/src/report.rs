@@ -1,11 +1,11 @@
 //! The answer: `diagnosis.json`, and what is written beside it.
 
-use crate::balance::{Balance, Kind};
+use crate::balance::{Kind, System};
 use crate::catalogue::{Cause, Class, Form};
 use crate::faults::Fault;
 use crate::locate::stretches;
 use crate::prove::Proof;
-use crate::refine::{Cured, Refined};
+use crate::refine::{Cured, HALF_95, Refined};
 use crate::search::Found;
 use crate::{Case, DiagnoseError, words};
 use headland_trace::{Origin, Run, Trace};
@@ -71,7 +71,7 @@ pub struct ParameterReport {
 
 /// A cause that explains as much.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Rival {
+pub struct RivalReport {
     /// Its identifier.
     pub id: String,
     /// Squared correlation with the cause that was named, free parameters projected out.
@@ -103,7 +103,7 @@ pub struct FindingReport {
     /// Growth of ln p by this cause, and what chance alone would reach once in a hundred.
     pub evidence: [f64; 2],
     /// Causes that explain as much.
-    pub indistinguishable_from: Vec<Rival>,
+    pub indistinguishable_from: Vec<RivalReport>,
     /// The run that would tell.
     pub next_experiment: String,
 }
@@ -152,8 +152,6 @@ pub struct Calibrated {
 /// A cause that was tried.
 #[derive(Clone, Debug, Serialize)]
 pub struct Tried {
-    /// The balance.
-    pub balance: Kind,
     /// The round: one cause is accepted in each.
     pub round: usize,
     /// The cause.
@@ -222,18 +220,17 @@ pub struct LeftOver {
 /// Puts the answer together.
 pub fn report(
     case: &Case,
-    balances: &[Balance],
-    found: &[Option<Found>],
+    system: &System,
+    found: &Found,
     refined: &Refined,
     proof: &Proof,
     faults: &[Fault],
-    unproven: &[&'static str],
 ) -> Result<Diagnosed, DiagnoseError> {
-    let mut findings = findings(case, balances, found, refined, proof);
-    findings.extend(faults.iter().map(|fault| faulty(fault, balances)));
+    let mut findings = findings(case, system, found, refined, proof);
+    findings.extend(faults.iter().map(|fault| faulty(fault, system)));
     let verdict = verdict(&findings);
     let ids = |wanted: bool| -> Vec<String> {
-        let chosen = case.drives.iter().zip(&case.fit).filter(|(_, fit)| **fit == wanted);
+        let chosen = case.runs.iter().zip(&case.fit).filter(|(_, fit)| **fit == wanted);
         chosen.map(|(drive, _)| drive.measured.id.clone()).collect()
     };
     let runs = |wanted: bool, errors: &crate::prove::Errors| FitRuns {
@@ -246,7 +243,7 @@ pub fn report(
         (Some(held), noise) if noise > 0.0 => held.after / noise,
         (None, noise) if noise > 0.0 => proof.fitted.after / noise,
         // Without a noise of its own the signal is judged by the rows: all of their scatter over the sensors' part.
-        _ => found.iter().flatten().map(|found| (1.0 + found.lack_of_fit.1).sqrt()).fold(0.0, f64::max),
+        _ => found.noises.1.0.iter().map(|noise| (1.0 + noise.lack()).sqrt()).fold(0.0, f64::max),
     };
     let fit = Fit {
         signal: proof.signal.to_owned(),
@@ -259,19 +256,20 @@ pub fn report(
     let calibrated = refined
         .free
         .iter()
-        .map(|(name, prior, value, ci95)| Calibrated {
-            name: name.clone(),
-            prior: *prior,
-            value: *value,
-            ci95: *ci95,
-            unit: unit(name),
+        .map(|free| Calibrated {
+            name: free.name.clone(),
+            prior: free.prior,
+            value: free.value,
+            ci95: free.ci95,
+            unit: unit(&free.name),
         })
         .collect();
     let mut notes = case.study.notes.clone();
-    if !unproven.is_empty() {
+    if !found.unproven.is_empty() {
+        let names: Vec<&str> = found.unproven.iter().map(|cause| case.causes[*cause].id).collect();
         notes.push(format!(
-            "{} would explain the fitted runs, but not those that were held out; so nothing of it is claimed.",
-            unproven.join(", ")
+            "{} would explain each run by itself, but not one from the others; so nothing of it is claimed.",
+            names.join(", ")
         ));
     }
     if case.chosen && ids(false).is_empty() {
@@ -294,42 +292,42 @@ pub fn report(
     let diagnosis = Diagnosis {
         schema: "headland.diagnosis/1",
         verdict,
-        answer: words::answer(verdict, &findings, &fit, balances),
+        answer: words::answer(verdict, &findings, &fit, &system.kinds),
         findings,
         fit,
         calibrated,
         null_space,
         notes,
-        tried: tried(case, balances, found),
+        tried: tried(case, found),
     };
     Ok(Diagnosed {
         diagnosis,
         scenarios: proof.scenarios.iter().map(|(_, text)| text.clone()).collect(),
         effects: effects(case, proof)?,
         corrections: corrections(refined),
-        residuals: residuals(case, balances, found),
+        residuals: residuals(case, system, found),
     })
 }
 
 fn findings(
     case: &Case,
-    balances: &[Balance],
-    found: &[Option<Found>],
+    system: &System,
+    found: &Found,
     refined: &Refined,
     proof: &Proof,
 ) -> Vec<FindingReport> {
     let mut findings: Vec<FindingReport> = Vec::new();
-    for (cured, effect) in refined.causes.iter().zip(&proof.effects) {
-        let balance = &balances[cured.balance];
-        let share = share(case, balance, found[cured.balance].as_ref(), cured, refined, proof);
-        let parameters = parameters(cured, case);
-        let rivals: Vec<Rival> = cured
+    for (place, (cured, effect)) in refined.causes.iter().zip(&proof.effects).enumerate() {
+        let balance = system.kinds[cured.accepted.balance];
+        let share = share(case, system, found, refined, place);
+        let parameters = parameters(cured);
+        let rivals: Vec<RivalReport> = cured
             .accepted
             .rivals
             .iter()
-            .map(|(cause, _, correlation)| Rival {
-                id: case.causes[*cause].id.to_owned(),
-                squared_correlation: *correlation,
+            .map(|rival| RivalReport {
+                id: case.causes[rival.cause].id.to_owned(),
+                squared_correlation: rival.squared_correlation,
             })
             .collect();
         findings.push(FindingReport {
@@ -339,11 +337,11 @@ fn findings(
                 FindingKind::Artefact
             },
             id: cured.cause.id.to_owned(),
-            balance: balance.kind,
-            sentence: words::sentence(&cured.cause, balance.kind, &parameters, share, &rivals),
+            balance,
+            sentence: words::sentence(&cured.cause, balance, &parameters, share, &rivals),
             equation: cured.cause.equation.to_owned(),
             depends_on: cured.cause.depends_on.iter().map(|name| (*name).to_owned()).collect(),
-            stretches: stretches(&case.drives, &effect.runs),
+            stretches: stretches(&case.runs, &effect.runs),
             parameters,
             share_of_mismatch: share,
             evidence: [cured.accepted.gain, cured.accepted.by_chance],
@@ -356,11 +354,11 @@ fn findings(
 }
 
 /// A fault that a channel shows by itself.
-fn faulty(fault: &Fault, balances: &[Balance]) -> FindingReport {
+fn faulty(fault: &Fault, system: &System) -> FindingReport {
     FindingReport {
         kind: FindingKind::Artefact,
         id: fault.id.to_owned(),
-        balance: balances.first().map_or(Kind::Motion, |balance| balance.kind),
+        balance: system.kinds.first().copied().unwrap_or(Kind::Motion),
         sentence: words::fault(fault),
         equation: String::new(),
         depends_on: vec![fault.channel.clone()],
@@ -378,20 +376,17 @@ fn faulty(fault: &Fault, balances: &[Balance]) -> FindingReport {
     }
 }
 
-fn tried(case: &Case, balances: &[Balance], found: &[Option<Found>]) -> Vec<Tried> {
+fn tried(case: &Case, found: &Found) -> Vec<Tried> {
     let mut all = Vec::new();
-    for (balance, found) in balances.iter().zip(found) {
-        for (number, round) in found.iter().flat_map(|found| &found.tried).enumerate() {
-            for (cause, shape, gain) in &round.causes {
-                all.push(Tried {
-                    balance: balance.kind,
-                    round: number + 1,
-                    id: case.causes[*cause].id.to_owned(),
-                    shape: shape.clone(),
-                    gain: *gain,
-                    needed: round.by_chance,
-                });
-            }
+    for (number, round) in found.tried.iter().enumerate() {
+        for (cause, shape, gain) in &round.causes {
+            all.push(Tried {
+                round: number + 1,
+                id: case.causes[*cause].id.to_owned(),
+                shape: shape.clone(),
+                gain: *gain,
+                needed: round.by_chance,
+            });
         }
     }
     all
@@ -420,71 +415,47 @@ fn verdict(findings: &[FindingReport]) -> Verdict {
     }
 }
 
-/// Share of the mismatch beyond the sensors' noise that a cause explains.
-fn share(
-    case: &Case,
-    balance: &Balance,
-    found: Option<&Found>,
-    cured: &Cured,
-    refined: &Refined,
-    proof: &Proof,
-) -> f64 {
-    let Some(found) = found else { return 0.0 };
-    let mean_square = |column: &crate::gram::Column| {
-        let (mut sum, mut count) = (0.0, 0usize);
-        for (chunk, values) in balance.chunks.iter().zip(column).filter(|(chunk, _)| case.fit[chunk.run]) {
-            sum += values.norm_squared();
-            count += chunk.rows.len();
-        }
-        sum / count.max(1) as f64
-    };
-    let noise = found.noise.1.sensor;
-    // Against the nominal model: what the free parameters take is part of the mismatch too.
-    let before = (mean_square(&balance.residual) - noise).max(1e-300);
-    let left = (mean_square(&found.left) - noise).max(0.0);
-    // Over samples: rows in which a spell works are set aside.
-    let size = |index: usize| {
-        let runs = proof.effects[index].runs.iter().zip(&case.fit).filter(|(_, fit)| **fit);
-        let squares: Vec<f64> = runs
-            .flat_map(|(run, _)| run)
-            .map(|value| value * value)
-            .filter(|value| value.is_finite())
-            .collect();
-        squares.iter().sum::<f64>() / squares.len().max(1) as f64
-    };
-    let same: Vec<usize> =
-        (0..refined.causes.len()).filter(|index| refined.causes[*index].balance == cured.balance).collect();
-    let all: f64 = same.iter().map(|index| size(*index)).sum();
-    let own = same
-        .iter()
-        .find(|index| refined.causes[**index].cause.id == cured.cause.id)
-        .map_or(0.0, |index| size(*index));
-    // What the free parameters take is part of the mismatch with the nominal model too.
+/// Share of the mismatch with the nominal model, in the balance in which a cause shows most, that it explains: its mean
+/// square over that of everything beyond the noise of the sensors. What the free parameters take is mismatch too.
+fn share(case: &Case, system: &System, found: &Found, refined: &Refined, place: usize) -> f64 {
+    let balance = refined.causes[place].accepted.balance;
+    let size = |column: &crate::gram::Column| system.mean_squares(column, &case.fit)[balance];
+    let noise = found.noises.1.0[balance].sensor;
+    let before = (size(&system.residual) - noise).max(f64::MIN_POSITIVE);
+    let left = (size(&found.left) - noise).max(0.0);
+    let of = |place: usize| found.effects.get(place).map_or(0.0, size);
+    let all: f64 = (0..refined.causes.len()).map(of).sum();
     let calibrated = (before - left - all).max(0.0);
-    if all > 0.0 { own / (all + left + calibrated) } else { 0.0 }
+    // Rows in which a spell works were set aside: it is judged by the force that it takes away.
+    let Some(cured) = refined.causes.get(place).filter(|cured| cured.events.is_empty()) else { return 1.0 };
+    if found.effects.get(place).is_none() {
+        // Corrected in the recording itself, before anything was left.
+        return if cured.accepted.gain > 0.0 { 1.0 - left / before.max(left) } else { 0.0 };
+    }
+    if all > 0.0 { of(place) / (all + left + calibrated) } else { 0.0 }
 }
 
-fn parameters(cured: &Cured, case: &Case) -> Vec<ParameterReport> {
+fn parameters(cured: &Cured) -> Vec<ParameterReport> {
     let one = |name: &str, value: f64, ci95: [f64; 2], unit: &str| ParameterReport {
         name: name.to_owned(),
         value,
         ci95,
         unit: unit.to_owned(),
     };
-    if let Some(function) = &cured.function {
-        return function_parameters(&cured.cause, function, case);
+    if let Some(function) = cured.function() {
+        return function_parameters(&cured.cause, function);
     }
     match cured.cause.id {
         "wind" => {
             let [(north, north_ci), (east, east_ci), ..] = cured.values[..] else { return Vec::new() };
-            let sd = |ci: [f64; 2]| (ci[1] - ci[0]) / 3.92;
+            let sd = |ci: [f64; 2]| (ci[1] - ci[0]) / (2.0 * HALF_95);
             let speed = north.hypot(east);
             let from = east.atan2(north).rem_euclid(std::f64::consts::TAU);
             let along = (north * sd(north_ci)).hypot(east * sd(east_ci)) / speed.max(1e-9);
             let across = (east * sd(north_ci)).hypot(north * sd(east_ci)) / speed.max(1e-9).powi(2);
             vec![
-                one("speed_m_s", speed, [(speed - 1.96 * along).max(0.0), speed + 1.96 * along], "m/s"),
-                one("from_rad", from, [from - 1.96 * across, from + 1.96 * across], "rad"),
+                one("speed_m_s", speed, [(speed - HALF_95 * along).max(0.0), speed + HALF_95 * along], "m/s"),
+                one("from_rad", from, [from - HALF_95 * across, from + HALF_95 * across], "rad"),
             ]
         }
         "cornering_drag" => {
@@ -509,12 +480,7 @@ fn parameters(cured: &Cured, case: &Case) -> Vec<ParameterReport> {
     }
 }
 
-fn function_parameters(
-    cause: &Cause,
-    function: &crate::profile::Function,
-    case: &Case,
-) -> Vec<ParameterReport> {
-    let _ = case;
+fn function_parameters(cause: &Cause, function: &crate::profile::Function) -> Vec<ParameterReport> {
     let term = &cause.terms[0];
     // The largest value over all groups, with its own band.
     let mut peak = (0.0, 0.0);
@@ -535,13 +501,13 @@ fn function_parameters(
         ParameterReport {
             name: term.name.to_owned(),
             value: peak.0,
-            ci95: [peak.0 - 1.96 * peak.1, peak.0 + 1.96 * peak.1],
+            ci95: [peak.0 - HALF_95 * peak.1, peak.0 + HALF_95 * peak.1],
             unit: term.unit.to_owned(),
         },
         ParameterReport {
             name: format!("{}_rms", term.name),
             value: rms,
-            ci95: [rms - 1.96 * peak.1, rms + 1.96 * peak.1],
+            ci95: [rms - HALF_95 * peak.1, rms + HALF_95 * peak.1],
             unit: term.unit.to_owned(),
         },
         ParameterReport {
@@ -558,8 +524,8 @@ fn experiment(cause: &Cause, cured: &Cured, case: &Case) -> String {
         return cause.experiment.to_owned();
     }
     let mut runs = vec![cause.experiment];
-    for (rival, _, _) in &cured.accepted.rivals {
-        let own = case.causes[*rival].experiment;
+    for rival in &cured.accepted.rivals {
+        let own = case.causes[rival.cause].experiment;
         if !runs.contains(&own) {
             runs.push(own);
         }
@@ -570,7 +536,7 @@ fn experiment(cause: &Cause, cured: &Cured, case: &Case) -> String {
 
 fn effects(case: &Case, proof: &Proof) -> Result<Vec<Run>, DiagnoseError> {
     let mut runs = Vec::new();
-    for (index, drive) in case.drives.iter().enumerate() {
+    for (index, drive) in case.runs.iter().enumerate() {
         let mut trace = Trace::new(drive.measured.trace.time_s().to_vec())?;
         for effect in &proof.effects {
             let name = format!("{}_{}", effect.id, effect.unit);
@@ -584,40 +550,30 @@ fn effects(case: &Case, proof: &Proof) -> Result<Vec<Run>, DiagnoseError> {
 }
 
 fn corrections(refined: &Refined) -> Vec<(String, f64, f64, f64)> {
-    let mut all = Vec::new();
-    for cured in refined.causes.iter().filter(|cured| cured.cause.class == Class::Artefact) {
-        let value = cured.values.first().map_or(0.0, |(value, _)| *value);
-        match cured.cause.id {
-            "latency" => all.push(("speed_m_s".to_owned(), value, 1.0, 0.0)),
-            "speed_scale" => all.push(("speed_m_s".to_owned(), 0.0, 1.0 + value, 0.0)),
-            "force_scale" => all.push(("tractive_force_n".to_owned(), 0.0, 1.0 + value, 0.0)),
-            "accelerometer_bias" => all.push(("specific_force_m_s2".to_owned(), 0.0, 1.0, value)),
-            _ => {}
-        }
-    }
-    all
+    let correction = |(id, value): (&str, f64)| match id {
+        "latency" => Some(("speed_m_s".to_owned(), value, 1.0, 0.0)),
+        "speed_scale" => Some(("speed_m_s".to_owned(), 0.0, 1.0 + value, 0.0)),
+        "force_scale" => Some(("tractive_force_n".to_owned(), 0.0, 1.0 + value, 0.0)),
+        "accelerometer_bias" => Some(("specific_force_m_s2".to_owned(), 0.0, 1.0, value)),
+        _ => None,
+    };
+    refined.artefacts().filter_map(correction).collect()
 }
 
-fn residuals(case: &Case, balances: &[Balance], found: &[Option<Found>]) -> Vec<LeftOver> {
+fn residuals(case: &Case, system: &System, found: &Found) -> Vec<LeftOver> {
     let mut all = Vec::new();
-    for (balance, found) in balances.iter().zip(found) {
-        let Some(found) = found else { continue };
-        for (run, drive) in case.drives.iter().enumerate() {
+    for (number, kind) in system.kinds.iter().enumerate() {
+        for (run, recorded) in case.runs.iter().enumerate() {
             let (mut times, mut before, mut after) = (Vec::new(), Vec::new(), Vec::new());
-            for (index, chunk) in balance.chunks.iter().enumerate().filter(|(_, chunk)| chunk.run == run) {
-                for (row, place) in chunk.rows.iter().enumerate() {
-                    times.push(place.time_s);
-                    before.push(found.before[index][row]);
-                    after.push(found.left[index][row]);
+            for (index, chunk) in system.chunks.iter().enumerate() {
+                if chunk.run == run && chunk.balance == number {
+                    times.extend(chunk.rows.iter().map(|row| row.time_s));
+                    before.extend(found.before[index].iter());
+                    after.extend(found.left[index].iter());
                 }
             }
-            all.push(LeftOver {
-                balance: balance.kind,
-                run: drive.measured.id.clone(),
-                time_s: times,
-                before,
-                after,
-            });
+            let id = recorded.measured.id.clone();
+            all.push(LeftOver { balance: *kind, run: id, time_s: times, before, after });
         }
     }
     all

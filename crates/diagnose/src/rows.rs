@@ -21,19 +21,21 @@ pub struct Row {
 /// Rows that follow each other without a gap.
 #[derive(Clone, Debug)]
 pub struct Chunk {
+    /// Number of its balance.
+    pub balance: usize,
     /// Index of the run.
     pub run: usize,
     /// Its rows.
     pub rows: Vec<Row>,
 }
 
-/// Longer chunks cost more than they tell: the covariance is dense within a chunk.
+/// Longer chunks cost more than they tell: what a function is made of is dense within a chunk.
 const LONGEST_CHUNK: usize = 150;
 /// A shorter chunk tells less about the noise than its ends disturb.
 const SHORTEST_CHUNK: usize = 4;
 
 /// Cuts a run into chunks of rows of blocks `block_s` long. Samples that are not `usable` break a chunk.
-pub fn chunks(run: usize, time_s: &[f64], usable: &[bool], block_s: f64) -> Vec<Chunk> {
+pub fn chunks(balance: usize, run: usize, time_s: &[f64], usable: &[bool], block_s: f64) -> Vec<Chunk> {
     let mut chunks = Vec::new();
     let Some(&start) = time_s.first() else { return chunks };
     let mut open: Vec<Row> = Vec::new();
@@ -42,7 +44,7 @@ pub fn chunks(run: usize, time_s: &[f64], usable: &[bool], block_s: f64) -> Vec<
         let pieces = rows.len().div_ceil(LONGEST_CHUNK).max(1);
         for piece in rows.chunks(rows.len().div_ceil(pieces).max(1)) {
             if piece.len() >= SHORTEST_CHUNK {
-                chunks.push(Chunk { run, rows: piece.to_vec() });
+                chunks.push(Chunk { balance, run, rows: piece.to_vec() });
             }
         }
     };
@@ -100,7 +102,7 @@ mod tests {
     #[test]
     fn the_weak_form_of_a_line_and_of_a_parabola_is_exact() {
         let time_s: Vec<f64> = (0..100).map(|index| 0.1 * f64::from(index)).collect();
-        let chunks = chunks(0, &time_s, &[true; 100], 0.5);
+        let chunks = chunks(0, 0, &time_s, &[true; 100], 0.5);
         let speed: Vec<f64> = time_s.iter().map(|time| 3.0 - 0.4 * time * time).collect();
         let force: Vec<f64> = time_s.iter().map(|time| -0.8 * time).collect();
         for row in &chunks[0].rows {
@@ -115,7 +117,7 @@ mod tests {
             (0..100).map(|index| 0.1 * f64::from(index) + if index >= 50 { 3.0 } else { 0.0 }).collect();
         let mut usable = vec![true; 100];
         usable[75] = false;
-        let chunks = chunks(0, &time_s, &usable, 0.2);
+        let chunks = chunks(0, 0, &time_s, &usable, 0.2);
         assert_eq!(chunks.len(), 3);
         assert!(
             chunks

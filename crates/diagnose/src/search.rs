@@ -1,29 +1,45 @@
-//! Which causes a balance needs: added one by one while the evidence grows more than chance could make it grow.
+//! Which causes the recordings need: sets of them are grown side by side while the evidence grows more than chance could
+//! make it grow, and the best set is asked of each of its causes whether it can do without, or with another instead.
 
 use crate::Case;
-use crate::balance::Balance;
+use crate::balance::System;
 use crate::catalogue::{Cause, Class, Form};
-use crate::gram::{Column, Estimate, Reduced, Whitened};
-use crate::noise::{Noise, Shape};
-use crate::profile::{Function, Profile, Spread};
+use crate::contest::Contest;
+use crate::gram::{Column, Estimate, Reduced};
+use crate::noise::{Noises, Shape};
+use crate::profile::Function;
+use crate::sensors::SMALL_SCALE;
+use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Trial};
 use headland_calibrate::statistics::{Draws, quantile_of_sorted, sorted};
-use nalgebra::DVector;
 use rayon::prelude::*;
 
-/// A cause that the balance needs.
+/// A cause that is needed.
 #[derive(Clone, Debug)]
 pub struct Accepted {
     /// Its trial.
     pub trial: Trial,
-    /// Growth of ln p.
+    /// Growth of ln p, beside the other causes.
     pub gain: f64,
     /// What chance would have made of the best of all trials, once in a hundred.
     pub by_chance: f64,
-    /// Causes that explain as much: index of the cause, growth of ln p, squared correlation.
-    pub rivals: Vec<(usize, f64, f64)>,
+    /// Causes that explain as much.
+    pub rivals: Vec<Rival>,
     /// The function, where it is one.
     pub function: Option<Function>,
+    /// The balance in which it shows most.
+    pub balance: usize,
+}
+
+/// A cause that explains as much as another.
+#[derive(Clone, Debug)]
+pub struct Rival {
+    /// Index of the cause.
+    pub cause: usize,
+    /// Growth of ln p in the other's place.
+    pub gain: f64,
+    /// Squared correlation with it, free parameters and other causes projected out.
+    pub squared_correlation: f64,
 }
 
 /// One round: the best trials, each with the growth of ln p that it brought.
@@ -35,15 +51,17 @@ pub struct Round {
     pub causes: Vec<(usize, Vec<f64>, f64)>,
 }
 
-/// What was found in a balance.
+/// What was found.
 pub struct Found {
     /// What was tried, round after round.
     pub tried: Vec<Round>,
-    /// The causes, in the order in which they were accepted.
+    /// Causes that the fitted runs ask for but do not teach each other.
+    pub unproven: Vec<usize>,
+    /// The causes, those that bring most first.
     pub accepted: Vec<Accepted>,
     /// Noise before and after.
-    pub noise: (Noise, Noise),
-    /// Values of the used columns at the end.
+    pub noises: (Noises, Noises),
+    /// Columns in use at the end.
     pub used: Vec<usize>,
     /// Their estimate.
     pub estimate: Estimate,
@@ -51,297 +69,249 @@ pub struct Found {
     pub left: Column,
     /// What the free parameters alone leave of every row.
     pub before: Column,
-    /// Growth of ln p on the runs that were held out, by what was accepted; none where there are none.
-    pub held_out_gain: Option<f64>,
-    /// Variance per row that is not noise of the sensors, before and after.
-    pub lack_of_fit: (f64, f64),
+    /// What each accepted cause does to every row.
+    pub effects: Vec<Column>,
 }
 
-impl Accepted {
-    /// Whether it is this cause, or cannot be told from it.
-    fn stands_for(&self, id: &str, causes: &[Cause]) -> bool {
-        /// Two causes of this squared correlation are one to the data.
-        const SAME: f64 = 0.7;
-        let rival =
-            |(cause, _, correlation): &(usize, f64, f64)| causes[*cause].id == id && *correlation > SAME;
-        causes[self.trial.cause].id == id || self.rivals.iter().any(rival)
-    }
-}
-
-/// Beyond this ratio of variances the sensors have no part.
-const MOST_LACK: f64 = 1e4;
-/// A difference of ln p that is none.
-const NEARLY: f64 = 1.0;
 /// At most so many causes.
 const MOST_CAUSES: usize = 3;
-/// Trials whose noise is estimated anew.
-const FINALISTS: usize = 8;
+/// So many sets are grown side by side, and each by so many causes.
+const BEAM: usize = 4;
+/// Each cause more makes a set less likely from the start: odds of one to twenty.
+const PER_CAUSE: f64 = 3.0;
 /// A growth of ln p within this of the best one does not tell the two apart: odds of one to twenty.
 const TOLERANCE: f64 = 3.0;
 /// No growth below this counts, whatever chance can do.
-const LEAST_GAIN: f64 = 4.0;
+pub const LEAST_GAIN: f64 = 4.0;
 /// Draws of the null distribution.
 const DRAWS: u64 = 300;
 /// An effect has to be at least this share of a row's noise, as root mean square.
 const LEAST_EFFECT: f64 = 0.15;
-/// A second or third cause has to be at least this share of what was to be explained, as mean square.
+/// A cause has to be at least this share of what was to be explained, as mean square.
 const LEAST_SHARE: f64 = 0.03;
-/// A sensor that is this close to right is right: share of a scale, of a sampling period for a latency.
-const LEAST_SCALE: f64 = 0.005;
+/// Two causes that leave less than this share of the smaller one when they are added cancel each other: neither is there.
+const CANCELLED: f64 = 0.3;
 
-/// Searches one balance.
-pub fn search(
-    case: &Case,
-    balance: &Balance,
-    pool: &Pool,
-    causes: &[Cause],
-    banned: &[&str],
-) -> Option<Found> {
-    let state = State { case, balance, pool, fit: &case.fit, banned };
-    let used: Vec<usize> = (0..pool.nuisance).collect();
-    let (noise, here) = state.settle(&used, None)?;
-    let first_noise = noise;
-    let before = state.left(&used, &here.estimate, None);
-    let mut stand = Stand { used, function: None, noise, here };
-    let mut accepted: Vec<Accepted> = Vec::new();
+/// Searches the causes.
+pub fn search(case: &Case, system: &System, pool: &Pool) -> Option<Found> {
+    search_without(case, system, pool, &[])
+}
+
+/// As [`search`], without some causes.
+pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]) -> Option<Found> {
+    let state = State { case, system, pool, fit: &case.fit };
+    let first = state.settle(Vec::new(), &system.noises(&system.residual, &case.fit))?;
     let mut tried: Vec<Round> = Vec::new();
+    let mut best = first.clone();
+    let mut open = vec![first.clone()];
+    let mut needed = LEAST_GAIN;
     for _ in 0..MOST_CAUSES {
-        let by_chance = state.chance(&stand);
-        let judged = state.judge(state.contest(&stand, &accepted), &stand);
-        tried.push(Round {
-            by_chance: LEAST_GAIN.max(by_chance),
-            causes: judged.iter().map(|one| (one.trial.cause, one.trial.shape.clone(), one.gain)).collect(),
-        });
-        let Some((place, next)) = state.choose(&judged, &stand, LEAST_GAIN.max(by_chance)) else { break };
-        let best = &judged[place];
-        accepted.push(Accepted {
-            trial: best.trial.clone(),
-            gain: best.gain,
-            by_chance,
-            rivals: state.rivals(best, &judged[place + 1..], &stand),
-            function: None,
-        });
-        stand = next;
-    }
-    let Stand { used, function, noise, here } = stand;
-    let made = function.and_then(|own| state.function(&used, &here.estimate, own, &noise));
-    if let Some((column, function)) = made {
-        for one in &mut accepted {
-            name_by_shape(one, &function, causes, pool);
-            if one.trial.columns == [column] && over_something(&causes[one.trial.cause]) {
-                one.function = Some(function.clone());
+        let mut grown: Vec<Stand> = Vec::new();
+        for (place, stand) in open.iter().enumerate() {
+            let reduced = state.reduced(&stand.noises, stand.function_part())?;
+            if place == 0 {
+                needed = LEAST_GAIN.max(state.chance(stand, &reduced));
             }
+            let judged = state.contest(stand, &reduced, banned);
+            if place == 0 {
+                tried.push(Round {
+                    by_chance: needed,
+                    causes: judged.iter().map(|one| one.told(stand.score)).collect(),
+                });
+            }
+            let able = judged.into_iter().filter(|one| one.stand.score - stand.score >= needed);
+            grown.extend(able.map(|one| one.stand).filter(|stand| state.sensible(stand)).take(BEAM));
         }
-    }
-    let shown = accepted.iter().find_map(|one| one.function.as_ref().map(|function| (&one.trial, function)));
-    let left = state.left(&used, &here.estimate, shown);
-    let lack = |noise: &Noise| (noise.process / noise.sensor.max(f64::MIN_POSITIVE)).min(MOST_LACK);
-    Some(Found {
-        tried,
-        held_out_gain: state.held_out_gain(&before, &left, &noise),
-        lack_of_fit: (lack(&first_noise), lack(&noise)),
-        accepted,
-        noise: (first_noise, noise),
-        used,
-        estimate: here.estimate,
-        left,
-        before,
-    })
-}
-
-/// What it costs to have had the choice among so many shapes: ln of their number. A spell at the same time in every run,
-/// with nothing that tells why, is less likely from the start.
-fn choice(cause: &Cause) -> f64 {
-    const BY_THE_CLOCK: f64 = 3.0;
-    let clock = cause.terms.iter().any(|term| term.name == "from_s");
-    (cause.shapes.len().max(1) as f64).ln() + if clock { BY_THE_CLOCK } else { 0.0 }
-}
-
-/// Whether a cause is a function of position or time.
-fn over_something(cause: &Cause) -> bool {
-    matches!(cause.form, Form::OverPosition | Form::OverTime)
-}
-
-/// Where the search stands.
-struct Stand {
-    used: Vec<usize>,
-    function: Option<(usize, Spread)>,
-    noise: Noise,
-    here: Settled,
-}
-
-impl Stand {
-    /// The columns and the function that it would have with one more cause.
-    fn with(&self, one: &Contest) -> (Vec<usize>, Option<(usize, Spread)>) {
-        let mut used = self.used.clone();
-        let mut function = self.function;
-        if let Some(spread) = one.spread {
-            function = Some((one.trial.columns[0], spread));
-        } else {
-            used.extend(&one.trial.columns);
+        grown.sort_by(|one, other| other.score.total_cmp(&one.score));
+        grown.dedup_by(|one, other| same(one, other));
+        grown.truncate(BEAM);
+        let Some(top) = grown.first() else { break };
+        let worth = |stand: &Stand| stand.score - PER_CAUSE * stand.parts.len() as f64;
+        if worth(top) > worth(&best) {
+            best = top.clone();
         }
-        (used, function)
+        open = grown;
     }
+    let best = state.without_needless(best, needed)?;
+    let (best, unproven) = state.without_unproven(best)?;
+    Some(state.found(best, &first, (tried, unproven), needed))
 }
 
-/// A trial in a round.
-#[derive(Clone)]
-struct Contest {
-    trial: Trial,
-    gain: f64,
-    spread: Option<Spread>,
+/// Whether two sets hold the same causes.
+fn same(one: &Stand, other: &Stand) -> bool {
+    let causes = |stand: &Stand| {
+        let mut all: Vec<usize> = stand.parts.iter().map(|part| part.trial.cause).collect();
+        all.sort_unstable();
+        all
+    };
+    causes(one) == causes(other)
 }
 
-struct Settled {
-    reduced: Reduced,
-    estimate: Estimate,
-}
-
-struct State<'a> {
-    case: &'a Case<'a>,
-    balance: &'a Balance,
-    pool: &'a Pool,
-    fit: &'a [bool],
-    banned: &'a [&'a str],
+impl Contest {
+    /// Cause, shape and gain.
+    fn told(&self, base: f64) -> (usize, Vec<f64>, f64) {
+        let (cause, shape) = self
+            .stand
+            .parts
+            .last()
+            .map_or((0, Vec::new()), |part| (part.trial.cause, part.trial.shape.clone()));
+        (cause, shape, self.stand.score - base)
+    }
 }
 
 impl State<'_> {
-    fn causes(&self) -> &[Cause] {
-        &self.case.causes
+    /// The set without causes that bring less beside the others than chance would.
+    fn without_needless(&self, mut best: Stand, needed: f64) -> Option<Stand> {
+        loop {
+            let lesser = (0..best.parts.len()).filter_map(|place| {
+                let mut parts = best.parts.clone();
+                parts.remove(place);
+                self.settle(parts, &best.noises)
+            });
+            let Some(top) = lesser.max_by(|one, other| one.score.total_cmp(&other.score)) else {
+                return Some(best);
+            };
+            if best.score - top.score >= needed {
+                return Some(best);
+            }
+            best = top;
+        }
     }
 
-    /// The trials that are worth judging: by columns, and by functions where there is none yet.
-    fn contest(&self, stand: &Stand, accepted: &[Accepted]) -> Vec<Contest> {
-        /// Trials within this of the best one are judged, though they be many.
-        const CLOSE: f64 = 10.0;
-        let base = stand.here.estimate.log_evidence;
-        let open = |trial: &&Trial| {
-            let id = self.causes()[trial.cause].id;
-            !self.banned.contains(&id) && !accepted.iter().any(|one| one.stands_for(id, self.causes()))
-        };
-        let mut contest: Vec<Contest> = Vec::new();
-        for trial in self.pool.trials.iter().filter(open) {
-            let cause = &self.causes()[trial.cause];
-            if over_something(cause) {
+    /// The set without causes that do not help to predict a run from the others, and what those are. A function of time
+    /// belongs to its own run, and no other can show it.
+    fn without_unproven(&self, mut best: Stand) -> Option<(Stand, Vec<usize>)> {
+        /// Growth of ln p of the runs predicted.
+        const LEAST: f64 = 1.0;
+        let mut out = Vec::new();
+        loop {
+            let Some(gains) = self.predicted(&best) else { return Some((best, out)) };
+            let timed = |place: &usize| self.cause(&best.parts[*place].trial).form == Form::OverTime;
+            let worst = (0..gains.len())
+                .filter(|place| !timed(place))
+                .min_by(|one, other| gains[*one].total_cmp(&gains[*other]));
+            let Some(worst) = worst.filter(|place| gains[*place] < LEAST) else { return Some((best, out)) };
+            let mut parts = best.parts.clone();
+            out.push(parts.remove(worst).trial.cause);
+            best = self.settle(parts, &best.noises)?;
+        }
+    }
+
+    /// What was found, each cause with what it brings beside the others and what could stand in its place.
+    fn found(
+        &self,
+        best: Stand,
+        first: &Stand,
+        (tried, unproven): (Vec<Round>, Vec<usize>),
+        needed: f64,
+    ) -> Found {
+        let mut parts: Vec<(f64, Part, Vec<Rival>)> = Vec::new();
+        for place in 0..best.parts.len() {
+            let part = best.parts[place].clone();
+            let mut others = best.parts.clone();
+            others.remove(place);
+            let (gain, rivals) = match self.settle(others, &best.noises) {
+                Some(lesser) => (best.score - lesser.score, self.rivals(&best, &part, &lesser)),
+                None => (needed, Vec::new()),
+            };
+            parts.push((gain, part, rivals));
+        }
+        parts.sort_by(|one, other| other.0.total_cmp(&one.0));
+        let mut accepted = Vec::new();
+        let mut effects = Vec::new();
+        for (gain, part, rivals) in parts {
+            let rows = best.effect(self, &part);
+            let function = part.spread.and(best.function.clone()).map(|function| {
+                // The value that it has everywhere belongs to the function.
+                let even = best.position(part.trial.columns[0]);
+                function.raised(even.map_or(0.0, |position| best.estimate.beta[position]))
+            });
+            let mut one = Accepted {
+                balance: self.balance_of(&rows, &best.noises),
+                trial: part.trial,
+                gain,
+                by_chance: needed,
+                rivals,
+                function,
+            };
+            self.name_by_shape(&mut one);
+            accepted.push(one);
+            effects.push(rows);
+        }
+        Found {
+            tried,
+            unproven,
+            accepted,
+            noises: (first.noises.clone(), best.noises.clone()),
+            used: best.used,
+            estimate: best.estimate,
+            left: best.left,
+            before: first.left.clone(),
+            effects,
+        }
+    }
+
+    /// The balance in which rows stand out most from its noise.
+    fn balance_of(&self, rows: &Column, noises: &Noises) -> usize {
+        let squares = self.system.mean_squares(rows, self.fit);
+        let strengths = squares.iter().zip(&noises.0).map(|(square, noise)| square / noise.sd().powi(2));
+        let best = strengths.enumerate().max_by(|one, other| one.1.total_cmp(&other.1));
+        best.map_or(0, |(number, _)| number)
+    }
+
+    /// Causes that explain as much in the place of one.
+    fn rivals(&self, best: &Stand, part: &Part, lesser: &Stand) -> Vec<Rival> {
+        let id = self.id(&part.trial);
+        let Some(reduced) = self.reduced(&best.noises, lesser.function_part()) else { return Vec::new() };
+        let at_best = Stand { noises: best.noises.clone(), ..lesser.clone() };
+        let mut rivals: Vec<Rival> = Vec::new();
+        for other in self.contest(&at_best, &reduced, &[]) {
+            let Some(own) = other.stand.parts.last() else { continue };
+            let listed = rivals.iter().any(|rival| self.case.causes[rival.cause].id == self.id(&own.trial));
+            if self.id(&own.trial) == id || listed || other.stand.score <= best.score - TOLERANCE {
                 continue;
             }
-            let mut with = stand.used.clone();
-            with.extend(&trial.columns);
-            let Some(estimate) = stand.here.reduced.estimate(&with, &self.pool.sd) else { continue };
-            if !impossible(cause, trial, &estimate, stand.used.len()) {
-                let gain = estimate.log_evidence - base - choice(cause);
-                contest.push(Contest { trial: trial.clone(), gain, spread: None });
-            }
-        }
-        contest.sort_by(|one, other| other.gain.total_cmp(&one.gain));
-        if let Some(best) = contest.first().map(|one| one.gain) {
-            let close = contest.iter().filter(|one| one.gain > best - CLOSE).count();
-            contest.truncate(FINALISTS.max(close.min(2 * FINALISTS)));
-        }
-        if stand.function.is_none() {
-            for trial in self.pool.trials.iter().filter(open) {
-                let cause = &self.causes()[trial.cause];
-                if over_something(cause)
-                    && let Some((gain, spread)) =
-                        self.best_spread(trial, cause, &stand.used, &stand.noise, base)
-                {
-                    contest.push(Contest { trial: trial.clone(), gain, spread: Some(spread) });
-                }
-            }
-        }
-        contest
-    }
-
-    /// The noise belongs to what is explained: each finalist is judged with its own. The best comes first.
-    fn judge(&self, contest: Vec<Contest>, stand: &Stand) -> Vec<Contest> {
-        let base = stand.here.estimate.log_evidence;
-        let own = |one: Contest| {
-            let (used, function) = stand.with(&one);
-            let (_, settled) = self.settle_from(&used, function, &stand.noise)?;
-            let gain = settled.estimate.log_evidence - base - choice(&self.causes()[one.trial.cause]);
-            Some(Contest { gain, ..one })
-        };
-        let mut judged: Vec<Contest> = contest.into_par_iter().filter_map(own).collect();
-        // Of two that explain as much, a cause in the world is named before a fault of a sensor.
-        let rank = |one: &Contest| {
-            let artefact = self.causes()[one.trial.cause].class == Class::Artefact;
-            one.gain - if artefact { NEARLY } else { 0.0 }
-        };
-        judged.sort_by(|one, other| rank(other).total_cmp(&rank(one)));
-        judged
-    }
-
-    /// The best that exceeds the threshold and matters, and where the search stands with it.
-    fn choose(&self, judged: &[Contest], stand: &Stand, threshold: f64) -> Option<(usize, Stand)> {
-        for (place, one) in judged.iter().enumerate() {
-            if one.gain < threshold {
-                return None;
-            }
-            let (used, function) = stand.with(one);
-            let Some((noise, here)) = self.settle_from(&used, function, &stand.noise) else { continue };
-            if self.matters(&used, &here, &one.trial, function, &noise) {
-                return Some((place, Stand { used, function, noise, here }));
-            }
-        }
-        None
-    }
-
-    /// Causes that explain as much as the best.
-    fn rivals(&self, best: &Contest, others: &[Contest], stand: &Stand) -> Vec<(usize, f64, f64)> {
-        let id = self.causes()[best.trial.cause].id;
-        let mut rivals: Vec<(usize, f64, f64)> = Vec::new();
-        for other in others {
-            let rival = self.causes()[other.trial.cause].id;
-            let listed = rivals.iter().any(|(known, _, _)| self.causes()[*known].id == rival);
-            if rival == id || listed || other.gain <= best.gain - TOLERANCE {
-                continue;
-            }
-            let reduced = &stand.here.reduced;
-            let (one, two) = (&best.trial.columns, &other.trial.columns);
-            let correlation = reduced.squared_correlation(one, two, &stand.used, &self.pool.sd);
-            rivals.push((other.trial.cause, other.gain, correlation));
+            let correlation = reduced.squared_correlation(
+                &part.trial.columns,
+                &own.trial.columns,
+                &lesser.used,
+                &self.sd(),
+            );
+            rivals.push(Rival {
+                cause: own.trial.cause,
+                gain: other.stand.score - lesser.score,
+                squared_correlation: correlation,
+            });
         }
         rivals
     }
 
-    /// What was accepted, judged on the rows that were never used.
-    fn held_out_gain(&self, before: &Column, left: &Column, noise: &Noise) -> Option<f64> {
-        let whitener = noise.whitener(&self.balance.chunks)?;
-        let mut gain = None;
-        for (index, chunk) in self.balance.chunks.iter().enumerate().filter(|(_, chunk)| !self.fit[chunk.run])
-        {
-            let cost = |column: &Column| whitener.whiten(chunk, &column[index]).norm_squared();
-            *gain.get_or_insert(0.0) += 0.5 * (cost(before) - cost(left));
-        }
-        gain
-    }
-
     /// The growth of ln p that the best of all trials reaches by chance once in a hundred, if nothing is missing.
-    fn chance(&self, stand: &Stand) -> f64 {
-        let pool = self.pool;
-        let usable = |trial: &&Trial| {
-            let cause = &self.causes()[trial.cause];
-            !self.banned.contains(&cause.id) && !over_something(cause)
-        };
-        let trials: Vec<&Trial> = pool.trials.iter().filter(usable).collect();
-        let reduced = &stand.here.reduced;
+    fn chance(&self, stand: &Stand, reduced: &Reduced) -> f64 {
+        let trials: Vec<&Trial> =
+            self.pool.trials.iter().filter(|trial| !self.cause(trial).is_function()).collect();
         let mut jittered = reduced.matrix.clone();
         for index in 0..jittered.nrows() {
             jittered[(index, index)] = jittered[(index, index)] * (1.0 + 1e-9) + 1e-300;
         }
         let Some(cholesky) = jittered.cholesky() else { return LEAST_GAIN };
         let factor = cholesky.l();
+        let sd = self.sd();
         let one = |draw: u64| {
-            let mut draws = Draws::new(self.case.seed, draw);
-            let white = DVector::from_fn(factor.nrows(), |_, _| draws.normal());
+            let mut draws = Draws::new(self.case.options.seed, draw);
+            let white = nalgebra::DVector::from_fn(factor.nrows(), |_, _| draws.normal());
             let mut problem = reduced.clone();
             problem.vector = &factor * white;
             problem.scalar = 0.0;
-            let base = problem.estimate(&stand.used, &pool.sd)?;
+            let base = problem.estimate(&stand.used, &sd)?;
+            let base = base.log_evidence + self.heavy(&stand.used, &base.beta);
             let gain = trials.iter().filter_map(|trial| {
+                let part = Part { trial: (*trial).clone(), spread: None };
                 let mut with = stand.used.clone();
                 with.extend(&trial.columns);
-                Some(problem.estimate(&with, &pool.sd)?.log_evidence - base.log_evidence)
+                let estimate = problem.estimate(&with, &sd)?;
+                let heavy = self.heavy(&with, &estimate.beta);
+                Some(estimate.log_evidence + heavy - self.choices(&[part]) - base)
             });
             Some(gain.fold(f64::NEG_INFINITY, f64::max))
         };
@@ -349,245 +319,80 @@ impl State<'_> {
         if best.is_empty() { LEAST_GAIN } else { quantile_of_sorted(&sorted(&best), 0.99) }
     }
 
-    fn settle(&self, used: &[usize], own: Option<(usize, Spread)>) -> Option<(Noise, Settled)> {
-        let chunks: Vec<_> = self.fit_chunks().cloned().collect();
-        let residual: Column = self.fit_rows(&self.balance.residual);
-        let noise = Noise::of(self.balance.shape, &chunks, &residual);
-        self.settle_from(used, own, &noise)
-    }
-
-    fn fit_chunks(&self) -> impl Iterator<Item = &crate::rows::Chunk> {
-        self.balance.chunks.iter().filter(|chunk| self.fit[chunk.run])
-    }
-
-    fn fit_rows(&self, column: &Column) -> Column {
-        let of = |(chunk, values): (&crate::rows::Chunk, &DVector<f64>)| {
-            self.fit[chunk.run].then(|| values.clone())
+    /// Whether every cause of a set is more than the ear can hear, and none is there to cancel another.
+    fn sensible(&self, stand: &Stand) -> bool {
+        let effects: Vec<Column> = stand.parts.iter().map(|part| stand.effect(self, part)).collect();
+        let in_noise = |rows: &Column| -> Vec<f64> {
+            let squares = self.system.mean_squares(rows, self.fit);
+            squares.iter().zip(&stand.noises.0).map(|(square, noise)| square / noise.sd().powi(2)).collect()
         };
-        self.balance.chunks.iter().zip(column).filter_map(of).collect()
-    }
-
-    /// Estimates, and lets the noise follow.
-    fn settle_from(
-        &self,
-        used: &[usize],
-        own: Option<(usize, Spread)>,
-        start: &Noise,
-    ) -> Option<(Noise, Settled)> {
-        const ROUNDS: usize = 15;
-        /// A growth of ln p below this is none.
-        const SETTLED: f64 = 0.02;
-        let chunks: Vec<_> = self.fit_chunks().cloned().collect();
-        let mut noise = *start;
-        let mut best: Option<(Noise, Settled)> = None;
-        for _ in 0..ROUNDS {
-            let whitened =
-                Whitened::new(&self.balance.chunks, &self.balance.residual, &self.pool.columns, &noise)?;
-            let reduced = match own {
-                None => whitened.reduced(&self.balance.chunks, self.fit),
-                Some((column, spread)) => {
-                    self.profile_of(column)?.eliminate(&whitened, &self.balance.chunks, self.fit, &spread)?
-                }
-            };
-            let estimate = reduced.estimate(used, &self.pool.sd)?;
-            let left = match own {
-                None => self.left(used, &estimate, None),
-                Some((column, spread)) => {
-                    let profile = self.profile_of(column)?;
-                    let function = profile.function(
-                        &whitened,
-                        &self.balance.chunks,
-                        self.fit,
-                        &spread,
-                        used,
-                        &estimate.beta,
-                    );
-                    self.minus(self.left(used, &estimate, None), column, &profile, &function)
-                }
-            };
-            let next = Noise::of(self.balance.shape, &chunks, &self.fit_rows(&left));
-            let better = best
-                .as_ref()
-                .is_none_or(|(_, one)| estimate.log_evidence > one.estimate.log_evidence + SETTLED);
-            if !better {
-                break;
-            }
-            best = Some((noise, Settled { reduced, estimate }));
-            if next == noise {
-                break;
-            }
-            noise = next;
-        }
-        best
-    }
-
-    fn left(&self, used: &[usize], estimate: &Estimate, own: Option<(&Trial, &Function)>) -> Column {
-        let mut left = self.balance.residual.clone();
-        for (position, index) in used.iter().enumerate() {
-            for (chunk, values) in left.iter_mut().zip(&self.pool.columns[*index]) {
-                *chunk -= values * estimate.beta[position];
-            }
-        }
-        match own {
-            Some((trial, function)) => match self.profile_of(trial.columns[0]) {
-                Some(profile) => self.minus(left, trial.columns[0], &profile, function),
-                None => left,
-            },
-            None => left,
-        }
-    }
-
-    fn minus(&self, mut left: Column, column: usize, profile: &Profile, function: &Function) -> Column {
-        for (index, chunk) in self.balance.chunks.iter().enumerate() {
-            let group = profile.group_of[chunk.run];
-            let signature = &self.pool.columns[column][index];
-            for ((left, at), signature) in left[index].iter_mut().zip(&profile.at[index]).zip(signature) {
-                *left -= signature * function.value(group, *at);
-            }
-        }
-        left
-    }
-
-    fn profile_of(&self, column: usize) -> Option<Profile<'_>> {
-        let trial = self.pool.trials.iter().find(|trial| trial.columns == [column])?;
-        Some(self.case.profile(self.balance, self.case.causes[trial.cause].form, &self.pool.columns[column]))
-    }
-
-    fn best_spread(
-        &self,
-        trial: &Trial,
-        cause: &Cause,
-        used: &[usize],
-        noise: &Noise,
-        base: f64,
-    ) -> Option<(f64, Spread)> {
-        let whitened =
-            Whitened::new(&self.balance.chunks, &self.balance.residual, &self.pool.columns, noise)?;
-        let profile = self.profile_of(trial.columns[0])?;
-        let longest = profile.extents.iter().map(|(from, to)| to - from).fold(0.0, f64::max);
-        let lengths: &[f64] = match cause.form {
-            Form::OverPosition => &[5.0, 15.0, 50.0, 150.0, 450.0],
-            _ => &[5.0, 20.0, 80.0, 320.0],
+        let sizes: Vec<Vec<f64>> = effects.iter().map(in_noise).collect();
+        let all: f64 = sizes.iter().flatten().sum();
+        let heard = |size: &Vec<f64>| {
+            let loud = size.iter().zip(&stand.noises.0).any(|(square, noise)| match noise.shape {
+                // Differences of speed are noisy row by row and not over a run, so their rows are no measure.
+                Shape::Differenced => *square > 0.0,
+                Shape::Averaged => square.sqrt() > LEAST_EFFECT,
+            });
+            loud && size.iter().sum::<f64>() > LEAST_SHARE * all
         };
-        let mut best: Option<(f64, Spread)> = None;
-        for length in lengths.iter().filter(|length| **length < longest) {
-            for share in [0.3, 1.0, 3.0] {
-                let spread = Spread { length: *length, size: share * cause.terms[0].scale };
-                let reduced = profile.eliminate(&whitened, &self.balance.chunks, self.fit, &spread);
-                let estimate = reduced.and_then(|reduced| reduced.estimate(used, &self.pool.sd));
-                let Some(estimate) = estimate else { continue };
-                let gain = estimate.log_evidence - base;
-                if best.is_none_or(|(known, _)| gain > known) {
-                    best = Some((gain, spread));
-                }
-            }
-        }
-        best
-    }
-
-    fn function(
-        &self,
-        used: &[usize],
-        estimate: &Estimate,
-        (column, spread): (usize, Spread),
-        noise: &Noise,
-    ) -> Option<(usize, Function)> {
-        let whitened =
-            Whitened::new(&self.balance.chunks, &self.balance.residual, &self.pool.columns, noise)?;
-        let profile = self.profile_of(column)?;
-        let function =
-            profile.function(&whitened, &self.balance.chunks, self.fit, &spread, used, &estimate.beta);
-        Some((column, function))
-    }
-
-    /// Whether an effect is more than the ear can hear: its size against a row's noise.
-    fn matters(
-        &self,
-        used: &[usize],
-        settled: &Settled,
-        trial: &Trial,
-        own: Option<(usize, Spread)>,
-        noise: &Noise,
-    ) -> bool {
-        if own.is_some_and(|(column, _)| trial.columns == [column]) {
-            return true;
-        }
-        let own = self.mean_square(&trial.columns, used, settled);
-        let others: Vec<usize> =
-            used.iter().copied().filter(|column| *column >= self.pool.nuisance).collect();
-        let all = self.mean_square(&others, used, settled);
-        // Differences of speed are noisy row by row and not over a run, so their rows are no measure.
-        let heard = match self.balance.shape {
-            Shape::Differenced => true,
-            Shape::Averaged => own.sqrt() > LEAST_EFFECT * noise.sd(),
+        let cancels = |one: usize, other: usize| {
+            let sum: Column =
+                effects[one].iter().zip(&effects[other]).map(|(one, other)| one + other).collect();
+            let smaller = sizes[one].iter().sum::<f64>().min(sizes[other].iter().sum());
+            in_noise(&sum).iter().sum::<f64>() < CANCELLED * smaller
         };
-        heard && own > LEAST_SHARE * all && self.beyond_the_sensor(used, settled, trial)
-    }
-
-    /// Mean square of what some columns explain together.
-    fn mean_square(&self, columns: &[usize], used: &[usize], settled: &Settled) -> f64 {
-        let (mut sum, mut count) = (0.0, 0usize);
-        for (index, chunk) in self.balance.chunks.iter().enumerate().filter(|(_, chunk)| self.fit[chunk.run])
-        {
-            let mut effect = DVector::zeros(chunk.rows.len());
-            for column in columns {
-                if let Some(position) = used.iter().position(|used| used == column) {
-                    effect += &self.pool.columns[*column][index] * settled.estimate.beta[position];
-                }
-            }
-            sum += effect.norm_squared();
-            count += effect.len();
-        }
-        sum / count.max(1) as f64
+        let pairs = (0..effects.len()).flat_map(|one| (0..one).map(move |other| (one, other)));
+        sizes.iter().all(heard)
+            && !pairs.into_iter().any(|(one, other)| cancels(one, other))
+            && stand.parts.iter().all(|part| self.beyond_the_sensor(stand, part))
     }
 
     /// Whether a sensor's fault is one that anybody would mind.
-    fn beyond_the_sensor(&self, used: &[usize], settled: &Settled, trial: &Trial) -> bool {
-        let cause = &self.case.causes[trial.cause];
-        let position = used.iter().position(|used| trial.columns.first() == Some(used));
-        let value = position.map_or(0.0, |position| settled.estimate.beta[position].abs());
-        match cause.id {
-            "latency" => {
-                let period = |drive: &crate::balance::Drive0| {
-                    drive.measured.trace.duration_s() / (drive.measured.trace.len().max(2) - 1) as f64
-                };
-                value > self.case.drives.iter().map(period).fold(0.0, f64::max)
-            }
-            "speed_scale" | "force_scale" => value > LEAST_SCALE,
+    fn beyond_the_sensor(&self, stand: &Stand, part: &Part) -> bool {
+        let position = part.trial.columns.first().and_then(|column| stand.position(*column));
+        let value = position.map_or(0.0, |position| stand.estimate.beta[position].abs());
+        match self.id(&part.trial) {
+            "latency" => value > crate::balance::longest_period_s(&self.case.runs),
+            "speed_scale" | "force_scale" => value > SMALL_SCALE,
             _ => true,
+        }
+    }
+
+    /// A function over position that these recordings give to slopes and to soft ground alike: where it rises in places
+    /// above a floor it is told as ground, where it goes both ways as slopes. The other stays named beside it.
+    fn name_by_shape(&self, one: &mut Accepted) {
+        /// So many times higher than deep is 'in places'.
+        const LOPSIDED: f64 = 2.0;
+        let causes: &[Cause] = &self.case.causes;
+        let id = causes[one.trial.cause].id;
+        let twin = match id {
+            "grade" => "soft_ground",
+            "soft_ground" => "grade",
+            _ => return,
+        };
+        let Some(place) = one.rivals.iter().position(|rival| causes[rival.cause].id == twin) else { return };
+        let Some(function) = &one.function else { return };
+        let values: Vec<f64> =
+            function.values.iter().flat_map(|(values, _)| values.iter().copied()).collect();
+        let values = sorted(&values);
+        let [low, middle, high] = [0.02, 0.5, 0.98].map(|share| quantile_of_sorted(&values, share));
+        let ground = high - middle > LOPSIDED * (middle - low);
+        if ground == (id == "soft_ground") {
+            return;
+        }
+        let rival = one.rivals[place].cause;
+        if let Some(trial) = self.pool.trials.iter().find(|trial| trial.cause == rival) {
+            one.rivals[place].cause = one.trial.cause;
+            one.trial = Trial { columns: one.trial.columns.clone(), ..trial.clone() };
         }
     }
 }
 
-/// Whether a cause would have to be what it cannot be.
-fn impossible(cause: &Cause, trial: &Trial, estimate: &Estimate, first: usize) -> bool {
-    let positive =
-        |(index, term): (usize, &usize)| cause.terms[*term].positive && estimate.beta[first + index] < 0.0;
-    trial.terms.iter().enumerate().any(positive)
-}
-
-/// A function over position that these recordings give to slopes and to soft ground alike: where it rises in places above
-/// a floor it is told as ground, where it goes both ways as slopes. The other stays named beside it.
-fn name_by_shape(one: &mut Accepted, function: &Function, causes: &[Cause], pool: &Pool) {
-    /// So many times higher than deep is 'in places'.
-    const LOPSIDED: f64 = 2.0;
-    let id = causes[one.trial.cause].id;
-    let twin = match id {
-        "grade" => "soft_ground",
-        "soft_ground" => "grade",
-        _ => return,
-    };
-    let Some(place) = one.rivals.iter().position(|(rival, _, _)| causes[*rival].id == twin) else { return };
-    let values: Vec<f64> = function.values.iter().flat_map(|(values, _)| values.iter().copied()).collect();
-    let values = sorted(&values);
-    let [low, middle, high] = [0.02, 0.5, 0.98].map(|share| quantile_of_sorted(&values, share));
-    let ground = high - middle > LOPSIDED * (middle - low);
-    if ground == (id == "soft_ground") {
-        return;
-    }
-    let rival = one.rivals[place].0;
-    if let Some(trial) = pool.trials.iter().find(|trial| trial.cause == rival) {
-        one.rivals[place].0 = one.trial.cause;
-        one.trial = Trial { columns: one.trial.columns.clone(), ..trial.clone() };
-    }
+/// Of two that explain as much, a cause in the world is named before a fault of a sensor.
+pub fn rank(stand: &Stand, state: &State) -> f64 {
+    /// A difference of ln p that is none.
+    const NEARLY: f64 = 1.0;
+    let artefact = stand.parts.last().is_some_and(|part| state.cause(&part.trial).class == Class::Artefact);
+    stand.score - if artefact { NEARLY } else { 0.0 }
 }

@@ -1,8 +1,8 @@
 //! What was found, as an engineer would write it.
 
-use crate::balance::{Balance, Kind};
+use crate::balance::Kind;
 use crate::catalogue::Cause;
-use crate::report::{FindingReport, Fit, ParameterReport, Rival, Verdict};
+use crate::report::{FindingReport, Fit, ParameterReport, RivalReport, Verdict};
 use std::fmt::Write;
 
 /// A number with as many digits as a person reads.
@@ -35,7 +35,7 @@ pub fn sentence(
     kind: Kind,
     parameters: &[ParameterReport],
     share: f64,
-    rivals: &[Rival],
+    rivals: &[RivalReport],
 ) -> String {
     let values: Vec<String> =
         parameters.iter().filter(|one| one.ci95[0] < one.ci95[1]).map(with_unit).collect();
@@ -57,8 +57,8 @@ pub fn sentence(
 }
 
 /// The paragraph.
-pub fn answer(verdict: Verdict, findings: &[FindingReport], fit: &Fit, balances: &[Balance]) -> String {
-    let balances: Vec<&str> = balances.iter().map(|balance| balance.kind.name()).collect();
+pub fn answer(verdict: Verdict, findings: &[FindingReport], fit: &Fit, balances: &[Kind]) -> String {
+    let balances: Vec<&str> = balances.iter().map(|balance| balance.name()).collect();
     let runs = match &fit.held_out {
         Some(held) => format!("{} runs to fit and {} held out", fit.fitted.runs.len(), held.runs.len()),
         None => format!("{} runs, none held out", fit.fitted.runs.len()),

@@ -235,8 +235,8 @@ impl Model {
                 let soil = self.soil.as_ref().map_or(0.0, |soil| soil.resistance_n(&contact));
                 (soil, air.drag_n(area_m2, speed_m_s, place.heading_rad))
             }
-            Resistance::RoadLoad { f0_n, f1_n_s_m, f2_n_s2_m2, air_density_kg_m3 } => {
-                let area_m2 = 2.0 * f2_n_s2_m2 / air_density_kg_m3;
+            Resistance::RoadLoad { f0_n, f1_n_s_m, .. } => {
+                let area_m2 = self.vehicle.resistance.drag_area_m2();
                 // The constant part goes with the mass: UN GTR 15, annex 4, correction K1.
                 let carried = situation.mass_kg / self.vehicle.mass_kg;
                 let road = carried * f0_n + f1_n_s_m * rolling_speed;
@@ -295,12 +295,7 @@ impl Model {
             gravity_m_s2: self.gravity_m_s2,
             place,
             air: given.air.unwrap_or(self.air),
-            drag_area_m2: match self.vehicle.resistance {
-                Resistance::Drag { area_m2 } => area_m2,
-                Resistance::RoadLoad { f2_n_s2_m2, air_density_kg_m3, .. } => {
-                    2.0 * f2_n_s2_m2 / air_density_kg_m3
-                }
-            },
+            drag_area_m2: self.vehicle.resistance.drag_area_m2(),
             coasting: command == Command::Coast,
             braking: given.braking,
             tractive_force_n: 0.0,

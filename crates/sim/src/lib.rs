@@ -21,7 +21,7 @@ pub use cycle::{Cycle, Phase, Start, Until, simulate};
 pub use ledger::{Entry, Ledger};
 pub use model::{Model, Named, Resistance, Vehicle};
 pub use replay::{Drive, Inputs, Replay, ReplayError, replay};
-pub use slope::{LocalFit, local_fit};
+pub use slope::{LocalFit, local_fit, travelled};
 
 use headland_trace::Trace;
 use serde::Serialize;

@@ -36,6 +36,16 @@ pub enum Resistance {
     },
 }
 
+impl Resistance {
+    /// Drag coefficient times frontal area, at the density of air at which it was found [m²].
+    pub fn drag_area_m2(&self) -> f64 {
+        match *self {
+            Self::Drag { area_m2 } => area_m2,
+            Self::RoadLoad { f2_n_s2_m2, air_density_kg_m3, .. } => 2.0 * f2_n_s2_m2 / air_density_kg_m3,
+        }
+    }
+}
+
 /// A plugin with the name that channels and the ledger call it by.
 #[derive(Debug)]
 pub struct Named<T: ?Sized> {

@@ -7,7 +7,7 @@
 use crate::balance::{Command, Given};
 use crate::ledger::Ledger;
 use crate::recorder::Recorder;
-use crate::slope::{LocalFit, local_fit};
+use crate::slope::{LocalFit, local_fit, travelled};
 use crate::step::Machine;
 use crate::{End, Model, Outcome};
 use headland_trace::{Origin, Trace, TraceError};
@@ -33,6 +33,8 @@ pub struct Replay {
     /// Recorded circumstances that the model is told as well.
     pub also: Vec<Inputs>,
     /// Length of the windows [s]; `None` for one window.
+    ///
+    /// Of no length, the model starts anew at every sample: it says what acts there, and how it would move on.
     pub window_s: Option<f64>,
     /// Half width of the local fit that gives speed and acceleration of the recording [s].
     pub smoothing_s: f64,
@@ -87,6 +89,12 @@ impl Inputs {
             Self::Brake => &["brake"],
         }
     }
+
+    /// Whether a recording has all of its channels, without a missing value.
+    pub fn whole(self, recorded: &Trace) -> bool {
+        let known = |values: &[f64]| values.iter().all(|value| value.is_finite());
+        self.channels().iter().all(|name| recorded.get(name).is_some_and(known))
+    }
 }
 
 /// A recording that cannot drive the model.
@@ -120,7 +128,11 @@ pub fn replay(model: &Model, recorded: &Trace, how: &Replay) -> Result<Outcome, 
     }
     let tape = Tape::load(model, recorded, how)?;
     let outcome = match how.drive {
-        Drive::Speed => tape.backward(model)?,
+        Drive::Speed => tape.follow(model, |tape, index, speed, _| tape.accelerated(index, speed))?,
+        Drive::Torque | Drive::Force | Drive::Coast if how.window_s == Some(0.0) => tape
+            .follow(model, |tape, index, speed, coasting| {
+                (tape.pushed(model, how, (index, 0.0), speed, coasting), false)
+            })?,
         Drive::Torque | Drive::Force | Drive::Coast => tape.forward(model, how)?,
     };
     Ok(Outcome { trace: mark_driven(&outcome.trace, how)?, ..outcome })
@@ -220,22 +232,54 @@ impl<'a> Tape<'a> {
         }
     }
 
-    fn backward(&self, model: &Model) -> Result<Outcome, ReplayError> {
+    /// The recorded acceleration, where the vehicle moves.
+    fn accelerated(&self, index: usize, speed: f64) -> (Command, bool) {
+        let stands = speed.abs() < STANDSTILL_M_S;
+        (Command::Accelerate(if stands { 0.0 } else { self.motion.slope[index] }), true)
+    }
+
+    /// The recorded push, a share of the way from one sample to the next.
+    fn pushed(
+        &self,
+        model: &Model,
+        how: &Replay,
+        (index, share): (usize, f64),
+        speed: f64,
+        coasting: bool,
+    ) -> Command {
+        let Some(push) = self.push.filter(|_| !coasting) else { return Command::Coast };
+        let next = push[(index + 1).min(push.len() - 1)];
+        let value = push[index] + share * (next - push[index]);
+        let force = if how.drive == Drive::Torque {
+            model.driveline.force_of_torque_n(value, speed).unwrap_or(f64::NAN)
+        } else {
+            value
+        };
+        // Nobody reverses on a braking motor: at rest it only holds.
+        Command::Recorded(if speed <= 0.0 { force.max(0.0) } else { force })
+    }
+
+    /// Follows the recorded motion sample by sample. `command` is told the sample, the speed and whether it coasts, and
+    /// says as well whether the motion is what drives.
+    fn follow(
+        &self,
+        model: &Model,
+        command: impl Fn(&Self, usize, f64, bool) -> (Command, bool),
+    ) -> Result<Outcome, ReplayError> {
         let mut machine = Machine::new(model, self.time_s[0], self.position_m[0], self.motion.value[0]);
         self.adopt_charge(&mut machine, 0);
         let mut recorder = Recorder::new(&machine);
         let mut before: Vec<f64> = Vec::new();
         for (index, &time_s) in self.time_s.iter().enumerate() {
             let (given, coasting) = self.given(model, index, 0.0);
-            let given = Given { driven: true, ..given };
-            let wanted = self.motion.slope[index];
             let stands = self.motion.value[index].abs() < STANDSTILL_M_S;
             let speed = if stands { 0.0 } else { self.motion.value[index] };
-            let command = match (coasting, stands) {
-                (true, _) => Command::Coast,
-                (false, true) => Command::Accelerate(0.0),
-                (false, false) => Command::Accelerate(wanted),
+            let (command, driven) = match command(self, index, speed, coasting) {
+                (Command::Accelerate(_), driven) if coasting => (Command::Coast, driven),
+                (_, driven) if stands && !coasting => (Command::Accelerate(0.0), driven),
+                other => other,
             };
+            let given = Given { driven, ..given };
             let control = move |_: f64, _: f64, _: f64| (command, given);
             let instant = if index == 0 {
                 machine.set_motion(self.position_m[0], speed);
@@ -271,20 +315,10 @@ impl<'a> Tape<'a> {
             let control = |time_s: f64, _: f64, speed: f64| {
                 let share = if span_s > 0.0 { (time_s - begin_s) / span_s } else { 0.0 };
                 let (given, coasting) = self.given(model, index, share);
-                let command = match self.push {
-                    _ if stands => Command::Accelerate(0.0),
-                    _ if coasting => Command::Coast,
-                    None => Command::Coast,
-                    Some(push) => {
-                        let value = push[index] + share * (push[next] - push[index]);
-                        let force = if how.drive == Drive::Torque {
-                            model.driveline.force_of_torque_n(value, speed).unwrap_or(f64::NAN)
-                        } else {
-                            value
-                        };
-                        // Nobody reverses on a braking motor: at rest it only holds.
-                        Command::Recorded(if speed <= 0.0 { force.max(0.0) } else { force })
-                    }
+                let command = if stands {
+                    Command::Accelerate(0.0)
+                } else {
+                    self.pushed(model, how, (index, share), speed, coasting)
                 };
                 (command, given)
             };
@@ -317,18 +351,6 @@ fn finish(machine: &Machine, recorder: Recorder) -> Result<Outcome, ReplayError>
         machine.energies_j(),
     );
     Ok(Outcome { trace: recorder.finish()?, ledger, end: End::Finished, steps: machine.steps })
-}
-
-/// Distance from speed, by the trapezoidal rule.
-fn travelled(time_s: &[f64], speed_m_s: &[f64]) -> Vec<f64> {
-    let mut position = 0.0;
-    let mut positions = vec![0.0];
-    for (times, speeds) in time_s.windows(2).zip(speed_m_s.windows(2)) {
-        let mean = 0.5 * (speeds[0] + speeds[1]);
-        position += if mean.is_finite() { mean * (times[1] - times[0]) } else { 0.0 };
-        positions.push(position);
-    }
-    positions
 }
 
 /// Marks the channels that agree with the recording because they were taken from it.

@@ -1,4 +1,4 @@
-//! Value and slope of a noisy series at each of its samples.
+//! Value and slope of a noisy series at each of its samples, and its sum.
 
 /// A local fit.
 #[derive(Clone, Debug, PartialEq)]
@@ -7,6 +7,18 @@ pub struct LocalFit {
     pub value: Vec<f64>,
     /// Slope at each sample, in that unit per second.
     pub slope: Vec<f64>,
+}
+
+/// Distance at each sample [m], by the trapezoidal rule; steps of unknown speed count nothing.
+pub fn travelled(time_s: &[f64], speed_m_s: &[f64]) -> Vec<f64> {
+    let mut position = 0.0;
+    let mut positions = vec![0.0];
+    for (times, speeds) in time_s.windows(2).zip(speed_m_s.windows(2)) {
+        let mean = 0.5 * (speeds[0] + speeds[1]);
+        position += if mean.is_finite() { mean * (times[1] - times[0]) } else { 0.0 };
+        positions.push(position);
+    }
+    positions
 }
 
 /// Fits a parabola to the samples within `half_width_s` of each sample, by least squares.

@@ -81,6 +81,11 @@ impl Trace {
         }
     }
 
+    /// Mean time between samples [s]; the whole duration where there is but one step or none.
+    pub fn period_s(&self) -> f64 {
+        self.duration_s() / (self.len().max(2) - 1) as f64
+    }
+
     /// All channels, in the order in which they were added.
     pub fn channels(&self) -> &[Channel] {
         &self.channels

@@ -1,0 +1,65 @@
+//! Whether what one run teaches holds in another: every run is left out once, the rest is fitted, and the run that was
+//! left out is predicted with a cause and without.
+//!
+//! Source: Stone, *J. R. Stat. Soc. B* 36 (1974) 111, here over whole runs.
+
+use crate::gram::{Column, Whitened};
+use crate::state::{Part, Stand, State};
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+impl State<'_> {
+    /// By how much ln p of runs that were left out grows with each cause of a set; none with a single run.
+    pub fn predicted(&self, stand: &Stand) -> Option<Vec<f64>> {
+        let fitted: Vec<usize> = (0..self.fit.len()).filter(|run| self.fit[*run]).collect();
+        if fitted.len() < 2 {
+            return None;
+        }
+        let full = self.deviance(&stand.parts, stand, &fitted)?;
+        let without = |place: usize| {
+            let mut parts = stand.parts.clone();
+            parts.remove(place);
+            self.deviance(&parts, stand, &fitted)
+        };
+        (0..stand.parts.len()).map(|place| Some(0.5 * (without(place)? - full))).collect()
+    }
+
+    /// Sum of the squares of what is left, whitened, of runs that were each predicted by the others.
+    fn deviance(&self, parts: &[Part], stand: &Stand, fitted: &[usize]) -> Option<f64> {
+        let used = self.columns(parts);
+        let columns: Vec<&Column> = used.iter().map(|column| &self.pool.columns[*column]).collect();
+        let all_sd = self.sd();
+        let sd: Vec<f64> = used.iter().map(|column| all_sd[*column]).collect();
+        let places: Vec<usize> = (0..used.len()).collect();
+        let chunks = &self.system.chunks;
+        let whitened = Whitened::new(chunks, &self.system.residual, &columns, &stand.noises)?;
+        let function = parts.iter().find_map(|part| Some((self.profile(&part.trial), part.spread?)));
+        let of_run = |out: &usize| -> Option<f64> {
+            let mut mask = self.fit.to_vec();
+            mask[*out] = false;
+            let reduced = match &function {
+                None => whitened.reduced(chunks, &mask),
+                Some((profile, spread)) => profile.eliminate(&whitened, chunks, &mask, spread)?,
+            };
+            let beta = reduced.estimate(&places, &sd)?.beta;
+            let rows = function.as_ref().map(|(profile, spread)| {
+                let made = profile.function(&whitened, chunks, &mask, spread, &places, &beta);
+                profile.rows(self.system, &made)
+            });
+            let mut sum = 0.0;
+            for (index, chunk) in chunks.iter().enumerate().filter(|(_, chunk)| chunk.run == *out) {
+                let mut left: DVector<f64> = self.system.residual[index].clone();
+                for (column, value) in columns.iter().zip(beta.iter()) {
+                    left -= &column[index] * *value;
+                }
+                if let Some(rows) = &rows {
+                    left -= &rows[index];
+                }
+                sum += whitened.whiteners.of(chunk).whiten(&left).norm_squared();
+            }
+            Some(sum)
+        };
+        let all: Vec<Option<f64>> = fitted.par_iter().map(of_run).collect();
+        all.into_iter().sum()
+    }
+}

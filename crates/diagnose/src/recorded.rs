@@ -1,0 +1,143 @@
+//! A recorded run with its motion, its place and the force that moved it.
+
+use headland_calibrate::study::{Measured, Study};
+use headland_sim::{Drive, LocalFit, Model, local_fit, travelled};
+use headland_trace::Trace;
+
+/// One recorded run with its motion.
+#[derive(Clone, Debug)]
+pub struct Recorded {
+    /// The run.
+    pub measured: Measured,
+    /// Smoothed speed and acceleration.
+    pub motion: LocalFit,
+    /// Acceleration that the recorded force and the nominal model make [m/s²]; the recorded one where no force is known.
+    ///
+    /// Regressors are made of it: made of the recorded acceleration they would explain their own noise.
+    pub acceleration_m_s2: Vec<f64>,
+    /// Position along the path [m].
+    pub position_m: Vec<f64>,
+    /// The ground that it drove over: runs of the same number share it.
+    pub path: usize,
+    /// How many runs drove this path before.
+    pub pass: usize,
+    /// Force at the wheels that was measured [N]; NaN where it is not known.
+    pub force_n: Option<Vec<f64>>,
+}
+
+/// Below this speed friction at rest decides, and no balance of motion holds [m/s].
+pub const SLOWEST_M_S: f64 = 0.4;
+
+/// Prepares the runs of a study.
+pub fn recorded(study: &Study, recording: &headland_recording::Recording, model: &Model) -> Vec<Recorded> {
+    let mut paths: Vec<Option<String>> = Vec::new();
+    let mut passes: Vec<usize> = Vec::new();
+    let mut all = Vec::new();
+    for (measured, described) in study.runs.iter().zip(&recording.runs) {
+        let path = match &described.path {
+            Some(path) => paths.iter().position(|known| known.as_ref() == Some(path)),
+            None => None,
+        };
+        let path = path.unwrap_or_else(|| {
+            paths.push(described.path.clone());
+            passes.push(0);
+            paths.len() - 1
+        });
+        let pass = passes[path];
+        passes[path] += 1;
+        let speed = measured.trace.get("speed_m_s").map(<[f64]>::to_vec).unwrap_or_default();
+        let motion = local_fit(measured.trace.time_s(), &speed, measured.how.smoothing_s);
+        all.push(Recorded {
+            position_m: position(measured, &motion),
+            acceleration_m_s2: motion.slope.clone(),
+            force_n: force(&measured.trace, model, &motion.value),
+            motion,
+            path,
+            pass,
+            measured: measured.clone(),
+        });
+    }
+    all
+}
+
+impl Recorded {
+    /// Everything that follows from the channels, made anew after they were changed.
+    pub fn follow(&mut self) {
+        if let Some(speed) = self.measured.trace.get("speed_m_s") {
+            self.motion = local_fit(self.measured.trace.time_s(), speed, self.measured.how.smoothing_s);
+        }
+    }
+
+    /// What can drive the run forward.
+    pub fn forward(&self) -> Option<Drive> {
+        let trace = &self.measured.trace;
+        let coasts = trace.get("coasting").is_some_and(|values| values.iter().all(|value| *value >= 0.5));
+        if coasts {
+            Some(Drive::Coast)
+        } else if trace.get("tractive_force_n").is_some() {
+            Some(Drive::Force)
+        } else if trace.get("motor_torque_n_m").is_some() && self.force_n.is_some() {
+            Some(Drive::Torque)
+        } else {
+            None
+        }
+    }
+
+    /// The acceleration that recorded force and a model's resistance make, where the vehicle moves and both are known.
+    pub fn accelerate(&mut self, resistance_n: &[f64], effective_mass_kg: &[f64]) {
+        let Some(force) = &self.force_n else { return };
+        self.acceleration_m_s2.clone_from(&self.motion.slope);
+        for (index, acceleration) in self.acceleration_m_s2.iter_mut().enumerate() {
+            let made = (force[index] - resistance_n[index]) / effective_mass_kg[index];
+            if made.is_finite() && self.motion.value[index] > SLOWEST_M_S {
+                *acceleration = made;
+            }
+        }
+    }
+}
+
+/// The force at the wheels that a recording knows.
+fn force(trace: &Trace, model: &Model, speed: &[f64]) -> Option<Vec<f64>> {
+    let torque = trace.get("motor_torque_n_m").or_else(|| trace.get("engine_torque_n_m"));
+    let mut force = match (trace.get("tractive_force_n"), torque) {
+        (Some(force), _) => Some(force.to_vec()),
+        (None, Some(torque)) => {
+            let of = |(torque, speed): (&f64, &f64)| model.driveline.force_of_torque_n(*torque, *speed);
+            torque.iter().zip(speed).map(of).collect::<Option<Vec<f64>>>()
+        }
+        (None, None) => None,
+    };
+    let Some(coasting) = trace.get("coasting") else { return force };
+    let free = |value: f64| value >= 0.5;
+    match &mut force {
+        Some(force) => {
+            for (force, _) in force.iter_mut().zip(coasting).filter(|(_, coasting)| free(**coasting)) {
+                *force = 0.0;
+            }
+        }
+        None if coasting.iter().any(|value| free(*value)) => {
+            force = Some(coasting.iter().map(|value| if free(*value) { 0.0 } else { f64::NAN }).collect());
+        }
+        None => {}
+    }
+    force
+}
+
+/// Where a run is, sample by sample [m].
+fn position(measured: &Measured, motion: &LocalFit) -> Vec<f64> {
+    let trace = &measured.trace;
+    let from_m = measured.how.reversed_from_m;
+    match (trace.get("position_m"), from_m) {
+        (Some(position), Some(from_m)) if position.last() >= position.first() => {
+            position.iter().map(|position| from_m - position).collect()
+        }
+        (Some(position), _) => position.to_vec(),
+        (None, from_m) => {
+            let far = travelled(trace.time_s(), &motion.value);
+            match from_m {
+                Some(from_m) => far.iter().map(|far| from_m - far).collect(),
+                None => far,
+            }
+        }
+    }
+}

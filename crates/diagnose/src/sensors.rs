@@ -1,0 +1,170 @@
+//! What a sensor's fault does to the rows, and recordings as they would be without it.
+
+use crate::balance::{Kind, longest_period_s};
+use crate::gram::Column;
+use crate::recorded::Recorded;
+use crate::said::Said;
+use crate::{Case, DiagnoseError, System};
+use headland_trace::{Channel, Trace};
+use headland_units::constants::STANDARD_GRAVITY_M_S2;
+
+/// The body pitches on its tyres while it speeds up, and the accelerometer with it.
+const PITCH: &str = "pitch";
+/// How much, usually [rad s²/m]: 0.0015 to 0.0023 rad at 0.7 m/s², for a tractor 1.3 m high on 3.6 m of wheelbase.
+const PITCH_RAD_S2_M: f64 = 0.004;
+/// A scale that nobody would call wrong.
+pub const SMALL_SCALE: f64 = 0.005;
+
+/// A fault that is free in every diagnosis.
+pub struct Small {
+    /// Its column.
+    pub column: Column,
+    /// Its usual size.
+    pub sd: f64,
+}
+
+/// What every sensor does a little: half a sampling period of latency, half a per cent of scale. Nobody would call it a
+/// fault, and it must not be taken for physics; so it is free throughout.
+pub fn small_faults(case: &Case, system: &System) -> Result<Vec<Small>, DiagnoseError> {
+    let small = [
+        (Kind::Motion, "latency", 0.5 * longest_period_s(&case.runs)),
+        (Kind::Motion, "force_scale", SMALL_SCALE),
+        (Kind::Motion, "speed_scale", SMALL_SCALE),
+        (Kind::Parity, PITCH, PITCH_RAD_S2_M),
+    ];
+    let mut all = Vec::new();
+    // What was corrected before is free by far more than a little, and once is enough.
+    for (kind, id, sd) in small {
+        if system.has(kind) && !case.corrections.iter().any(|correction| correction.id == id) {
+            all.push(Small { column: fault(case, system, id, sd)?, sd });
+        }
+    }
+    Ok(all)
+}
+
+/// What a fault of size `step` does to every row, over `step`.
+///
+/// The acceleration is the one that force and model make: the recorded one would bring its noise into the column.
+pub fn fault(case: &Case, system: &System, id: &str, step: f64) -> Result<Column, DiagnoseError> {
+    let corrected = corrected(&case.runs, id, step)?;
+    let said = case.said_of(&corrected, case.study.scenario(), &case.study.priors())?;
+    Ok(system.column(|kind| {
+        (0..case.runs.len())
+            .map(|run| {
+                let (before, after) = (&case.runs[run], &corrected[run]);
+                let samples = match kind {
+                    Kind::Motion => motion(id, step, (before, &case.nominal[run]), (after, &said[run])),
+                    Kind::Parity => less("specific_force_m_s2", before, after),
+                    Kind::Slip => less("wheel_speed_m_s", before, after),
+                    Kind::Battery | Kind::Fuel => Vec::new(),
+                };
+                samples.iter().map(|value| value / step).collect()
+            })
+            .collect()
+    }))
+}
+
+/// The channel as it was less as it is, corrected.
+fn less(name: &str, before: &Recorded, after: &Recorded) -> Vec<f64> {
+    match (before.measured.trace.get(name), after.measured.trace.get(name)) {
+        (Some(before), Some(after)) => before.iter().zip(after).map(|(one, other)| one - other).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// What a correction changes in the balance of motion, sample by sample [N].
+fn motion(
+    id: &str,
+    step: f64,
+    (run, model): (&Recorded, &Said),
+    (after, remodelled): (&Recorded, &Said),
+) -> Vec<f64> {
+    let time_s = run.measured.trace.time_s();
+    let force = |run: &Recorded, index: usize| run.force_n.as_ref().map_or(0.0, |force| force[index]);
+    let faster = |index: usize| {
+        let made = run.acceleration_m_s2[index];
+        match id {
+            "latency" => interpolate(time_s, &run.acceleration_m_s2, time_s[index] + step) - made,
+            // With a wheel speed beside it, it is that sensor whose scale is wrong.
+            "speed_scale" if run.measured.trace.get("wheel_speed_m_s").is_none() => {
+                made / (1.0 + step) - made
+            }
+            _ => 0.0,
+        }
+    };
+    (0..model.resistance_n.len())
+        .map(|index| {
+            force(run, index) - force(after, index) + remodelled.resistance_n[index]
+                - model.resistance_n[index]
+                + model.effective_mass_kg[index] * faster(index)
+        })
+        .collect()
+}
+
+/// The channel that a fault is corrected in, and its samples without it.
+fn without(run: &Recorded, id: &str, value: f64) -> Option<(&'static str, Vec<f64>)> {
+    let trace = &run.measured.trace;
+    let time_s = trace.time_s();
+    let each = |name: &'static str, change: &dyn Fn(usize, f64) -> f64| {
+        let samples = trace.get(name)?;
+        Some((name, samples.iter().enumerate().map(|(index, sample)| change(index, *sample)).collect()))
+    };
+    let scaled = |_: usize, sample: f64| sample / (1.0 + value);
+    match id {
+        "latency" => {
+            let speed = trace.get("speed_m_s")?;
+            each("speed_m_s", &|index, _| interpolate(time_s, speed, time_s[index] + value))
+        }
+        "speed_scale" if trace.get("wheel_speed_m_s").is_some() => each("wheel_speed_m_s", &scaled),
+        "speed_scale" => each("speed_m_s", &scaled),
+        "accelerometer_bias" => each("specific_force_m_s2", &|_, sample| sample - value),
+        "accelerometer_tilt" => {
+            each("specific_force_m_s2", &|_, sample| sample - STANDARD_GRAVITY_M_S2 * value.sin())
+        }
+        PITCH => each("specific_force_m_s2", &|index, sample| {
+            sample - STANDARD_GRAVITY_M_S2 * value * run.acceleration_m_s2[index]
+        }),
+        _ => None,
+    }
+}
+
+/// The runs as they would have been recorded without a fault of this size.
+pub fn corrected(runs: &[Recorded], id: &str, value: f64) -> Result<Vec<Recorded>, DiagnoseError> {
+    let one = |run: &Recorded| {
+        let mut changed = run.clone();
+        if let Some((name, samples)) = without(run, id, value) {
+            changed.measured.trace = with_channel(&run.measured.trace, name, samples)?;
+        }
+        if id == "force_scale" {
+            for sample in changed.force_n.iter_mut().flatten() {
+                *sample /= 1.0 + value;
+            }
+            for name in ["tractive_force_n", "motor_torque_n_m", "engine_torque_n_m"] {
+                let trace = &changed.measured.trace;
+                if let Some(samples) = trace.get(name) {
+                    let samples = samples.iter().map(|sample| sample / (1.0 + value)).collect();
+                    changed.measured.trace = with_channel(trace, name, samples)?;
+                }
+            }
+        }
+        changed.follow();
+        Ok(changed)
+    };
+    runs.iter().map(one).collect()
+}
+
+fn with_channel(trace: &Trace, name: &str, values: Vec<f64>) -> Result<Trace, DiagnoseError> {
+    let mut changed = Trace::new(trace.time_s().to_vec())?;
+    let mut values = Some(values);
+    for Channel { name: own, values: kept, origin } in trace.channels() {
+        let values = if own == name { values.take().unwrap_or_default() } else { kept.clone() };
+        changed.push(own.clone(), values, *origin)?;
+    }
+    Ok(changed)
+}
+
+fn interpolate(times: &[f64], values: &[f64], at: f64) -> f64 {
+    let right = times.partition_point(|time| *time < at).clamp(1, times.len() - 1);
+    let share = ((at - times[right - 1]) / (times[right] - times[right - 1])).clamp(0.0, 1.0);
+    values[right - 1] + share * (values[right] - values[right - 1])
+}

@@ -1,0 +1,108 @@
+//! Shapes between the points of a grid: what lies between them must not be left for another cause to explain.
+
+use crate::catalogue::Form;
+use crate::search::Found;
+use crate::state::{Part, State};
+use crate::trial::{Pool, add_trial};
+use crate::{Case, DiagnoseError, System};
+
+/// So many causes get the chance.
+const MOST: usize = 3;
+/// Those that bring at least this share of what the best one brings.
+const CLOSE: f64 = 0.5;
+/// First factor by which a parameter is moved: half way to the next point of a grid of doubles.
+const FACTOR: f64 = 1.4;
+/// The factor's root is taken so many times.
+const ROUNDS: usize = 4;
+
+/// Adds a trial at the best shape, of the best causes that have one. Whether there was anything to add.
+pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> Result<bool, DiagnoseError> {
+    let Some(round) = found.tried.first() else { return Ok(false) };
+    let Some(greatest) = round.causes.first().map(|one| one.2).filter(|gain| *gain > 0.0) else {
+        return Ok(false);
+    };
+    let mut chosen: Vec<(usize, Vec<f64>)> = Vec::new();
+    let mut consider = |cause: usize, shape: &[f64]| {
+        let free = case.causes[cause].terms.iter().any(|term| !term.linear && term.low < term.high);
+        let known = chosen.iter().any(|(own, _)| *own == cause);
+        if free && !known && case.causes[cause].form == Form::Parameters {
+            chosen.push((cause, shape.to_vec()));
+        }
+    };
+    for one in &found.accepted {
+        consider(one.trial.cause, &one.trial.shape);
+    }
+    for (cause, shape, gain) in round.causes.iter().filter(|one| one.2 >= CLOSE * greatest).take(MOST) {
+        if *gain > 0.0 {
+            consider(*cause, shape);
+        }
+    }
+    let mut added = false;
+    for (cause, shape) in chosen {
+        let best = best(case, system, pool, found, cause, &shape)?;
+        if best != shape {
+            add_trial(case, system, pool, cause, &best)?;
+            added = true;
+        }
+    }
+    Ok(added)
+}
+
+/// The shape that makes the recordings most likely, by moving one parameter at a time.
+fn best(
+    case: &Case,
+    system: &System,
+    pool: &mut Pool,
+    found: &Found,
+    cause: usize,
+    start: &[f64],
+) -> Result<Vec<f64>, DiagnoseError> {
+    let (columns, trials) = (pool.columns.len(), pool.trials.len());
+    let accepted = found.accepted.iter().find(|one| one.trial.cause == cause);
+    let wanted = accepted.map(|one| one.trial.terms.clone());
+    // Beside the other accepted causes, but for functions.
+    let others: Vec<Part> = found
+        .accepted
+        .iter()
+        .filter(|one| accepted.is_some() && one.trial.cause != cause && one.function.is_none())
+        .map(|one| Part { trial: one.trial.clone(), spread: None })
+        .collect();
+    let noises = if accepted.is_some() { &found.noises.1 } else { &found.noises.0 };
+    let mut likely = |shape: &[f64]| -> Result<f64, DiagnoseError> {
+        add_trial(case, system, pool, cause, shape)?;
+        let state = State { case, system, pool, fit: &case.fit };
+        let new = pool.trials[trials..]
+            .iter()
+            .filter(|trial| wanted.as_ref().is_none_or(|terms| *terms == trial.terms));
+        let judged = new.filter_map(|trial| {
+            let mut parts = others.clone();
+            parts.push(Part { trial: trial.clone(), spread: None });
+            state.likely(&parts, noises)
+        });
+        let greatest = judged.fold(f64::NEG_INFINITY, f64::max);
+        pool.truncate(columns, trials);
+        Ok(greatest)
+    };
+    let terms: Vec<_> = case.causes[cause].terms.iter().filter(|term| !term.linear).collect();
+    let mut shape = start.to_vec();
+    let mut greatest = likely(&shape)?;
+    let mut factor = FACTOR;
+    for _ in 0..ROUNDS {
+        for place in 0..shape.len() {
+            if terms[place].low >= terms[place].high || shape[place] == 0.0 {
+                continue;
+            }
+            for factor in [factor, 1.0 / factor] {
+                let mut moved = shape.clone();
+                moved[place] *= factor;
+                let gain = likely(&moved)?;
+                if gain > greatest {
+                    (shape, greatest) = (moved, gain);
+                    break;
+                }
+            }
+        }
+        factor = factor.sqrt();
+    }
+    Ok(shape)
+}

@@ -1,0 +1,236 @@
+//! A set of causes and how likely it makes the recordings: estimates, their noise, the evidence.
+
+use crate::Case;
+use crate::balance::System;
+use crate::catalogue::Cause;
+use crate::gram::{Column, Estimate, Reduced, Whitened};
+use crate::noise::Noises;
+use crate::profile::{Function, Profile, Spread};
+use crate::trial::{Pool, Trial};
+use nalgebra::DVector;
+
+/// A cause in a set, and how a function of it is spread.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Its trial.
+    pub trial: Trial,
+    /// Where it is a function.
+    pub spread: Option<Spread>,
+}
+
+/// A set of causes with its estimate.
+#[derive(Clone)]
+pub struct Stand {
+    /// The causes.
+    pub parts: Vec<Part>,
+    /// Columns in use: free parameters first.
+    pub used: Vec<usize>,
+    /// Noise that suits it.
+    pub noises: Noises,
+    /// Values of the columns in use.
+    pub estimate: Estimate,
+    /// ln p of the recordings, with what the choice of the causes costs.
+    pub score: f64,
+    /// What it leaves of every row.
+    pub left: Column,
+    /// The function, where there is one.
+    pub function: Option<Function>,
+}
+
+/// What all sets are judged by.
+pub struct State<'a> {
+    pub case: &'a Case<'a>,
+    pub system: &'a System,
+    pub pool: &'a Pool,
+    pub fit: &'a [bool],
+}
+
+/// Effects are sometimes several times their usual size: so much wider is the prior that they are estimated with.
+const WIDER: f64 = 3.0;
+
+/// What it costs to have had the choice among so many shapes: ln of their number. A spell at the same time in every run,
+/// with nothing that tells why, is less likely from the start.
+fn choice(cause: &Cause) -> f64 {
+    const BY_THE_CLOCK: f64 = 3.0;
+    let clock = cause.terms.iter().any(|term| term.name == "from_s");
+    (cause.shapes.len().max(1) as f64).ln() + if clock { BY_THE_CLOCK } else { 0.0 }
+}
+
+impl<'a> State<'a> {
+    /// The cause of a trial.
+    pub fn cause(&self, trial: &Trial) -> &'a Cause {
+        &self.case.causes[trial.cause]
+    }
+
+    /// Its identifier.
+    pub fn id(&self, trial: &Trial) -> &'static str {
+        self.cause(trial).id
+    }
+
+    /// Columns that a set of causes uses. A function brings its signature: the value that it has on average.
+    pub fn columns(&self, parts: &[Part]) -> Vec<usize> {
+        let mut used: Vec<usize> = (0..self.pool.nuisance).collect();
+        used.extend(parts.iter().flat_map(|part| part.trial.columns.iter().copied()));
+        used
+    }
+
+    /// Prior standard deviation of every column, for estimates.
+    pub fn sd(&self) -> Vec<f64> {
+        let wide = |(index, sd): (usize, &f64)| if index < self.pool.nuisance { *sd } else { WIDER * sd };
+        self.pool.sd.iter().enumerate().map(wide).collect()
+    }
+
+    /// What turns the evidence with the wide normal priors into that with priors of heavy tails: a cause's parameter is
+    /// usually of its scale, sometimes several times that. Cauchy (at the estimate) over normal.
+    pub fn heavy(&self, used: &[usize], beta: &DVector<f64>) -> f64 {
+        let own = |(column, value): (&usize, &f64)| {
+            let ratio = value / self.pool.sd[*column];
+            let normal = -0.5 * (ratio / WIDER).powi(2) - (WIDER * (2.0 * std::f64::consts::PI).sqrt()).ln();
+            let cauchy = -(std::f64::consts::PI * (1.0 + ratio * ratio)).ln();
+            cauchy - normal
+        };
+        let causes = used.iter().zip(beta.iter()).filter(|(column, _)| **column >= self.pool.nuisance);
+        causes.map(own).sum()
+    }
+
+    /// Whether a set would have to be what it cannot be.
+    pub fn impossible(&self, parts: &[Part], estimate: &Estimate) -> bool {
+        let mut position = self.pool.nuisance;
+        for part in parts {
+            let cause = self.cause(&part.trial);
+            for term in &part.trial.terms {
+                let bounded = part.spread.is_none();
+                if bounded && cause.impossible(*term, estimate.beta[position]) {
+                    return true;
+                }
+                position += 1;
+            }
+        }
+        false
+    }
+
+    /// Cost of the choice of these causes.
+    pub fn choices(&self, parts: &[Part]) -> f64 {
+        parts.iter().map(|part| choice(self.cause(&part.trial))).sum()
+    }
+
+    /// All columns and the residual, multiplied at a noise, with a function eliminated.
+    pub fn reduced(&self, noises: &Noises, function: Option<&Part>) -> Option<Reduced> {
+        let columns: Vec<&Column> = self.pool.columns.iter().collect();
+        let whitened = Whitened::new(&self.system.chunks, &self.system.residual, &columns, noises)?;
+        match function.and_then(|part| Some((part, part.spread?))) {
+            None => Some(whitened.reduced(&self.system.chunks, self.fit)),
+            Some((part, spread)) => {
+                let profile = self.profile(&part.trial);
+                profile.eliminate(&whitened, &self.system.chunks, self.fit, &spread)
+            }
+        }
+    }
+
+    /// The function of a trial, on the rows.
+    pub fn profile(&self, trial: &Trial) -> Profile<'a> {
+        Profile::new(
+            self.system,
+            &self.case.runs,
+            self.cause(trial).form,
+            &self.pool.columns[trial.columns[0]],
+        )
+    }
+
+    /// ln p of the recordings with a set of causes at a noise, without what the choice costs; no function among them.
+    pub fn likely(&self, parts: &[Part], noises: &Noises) -> Option<f64> {
+        let used = self.columns(parts);
+        let columns: Vec<&Column> = used.iter().map(|column| &self.pool.columns[*column]).collect();
+        let all_sd = self.sd();
+        let sd: Vec<f64> = used.iter().map(|column| all_sd[*column]).collect();
+        let places: Vec<usize> = (0..used.len()).collect();
+        let whitened = Whitened::new(&self.system.chunks, &self.system.residual, &columns, noises)?;
+        let estimate = whitened.reduced(&self.system.chunks, self.fit).estimate(&places, &sd)?;
+        let possible = !self.impossible(parts, &estimate);
+        possible.then(|| estimate.log_evidence + self.heavy(&used, &estimate.beta))
+    }
+
+    /// Estimates a set of causes, and lets the noise follow.
+    pub fn settle(&self, parts: Vec<Part>, start: &Noises) -> Option<Stand> {
+        const ROUNDS: usize = 12;
+        /// A growth of ln p below this is none.
+        const SETTLED: f64 = 0.02;
+        let used = self.columns(&parts);
+        let columns: Vec<&Column> = used.iter().map(|column| &self.pool.columns[*column]).collect();
+        let all_sd = self.sd();
+        let sd: Vec<f64> = used.iter().map(|column| all_sd[*column]).collect();
+        let places: Vec<usize> = (0..used.len()).collect();
+        let function = parts.iter().find_map(|part| Some((self.profile(&part.trial), part.spread?)));
+        let chunks = &self.system.chunks;
+        let mut noises = start.clone();
+        let mut best: Option<Stand> = None;
+        for _ in 0..ROUNDS {
+            let whitened = Whitened::new(chunks, &self.system.residual, &columns, &noises)?;
+            let reduced = match &function {
+                None => whitened.reduced(chunks, self.fit),
+                Some((profile, spread)) => profile.eliminate(&whitened, chunks, self.fit, spread)?,
+            };
+            let estimate = reduced.estimate(&places, &sd)?;
+            let mut left = self.left(&used, &estimate.beta);
+            let made = function.as_ref().map(|(profile, spread)| {
+                let beta = &estimate.beta;
+                let made = profile.function(&whitened, chunks, self.fit, spread, &places, beta);
+                for (left, rows) in left.iter_mut().zip(profile.rows(self.system, &made)) {
+                    *left -= rows;
+                }
+                made
+            });
+            let next = self.system.noises(&left, self.fit);
+            let score = estimate.log_evidence + self.heavy(&used, &estimate.beta) - self.choices(&parts);
+            if best.as_ref().is_some_and(|one| score <= one.score + SETTLED) {
+                break;
+            }
+            let parts = parts.clone();
+            best = Some(Stand { parts, used: used.clone(), noises, estimate, score, left, function: made });
+            noises = next;
+        }
+        best
+    }
+
+    /// What columns of these values leave of every row.
+    pub fn left(&self, used: &[usize], beta: &DVector<f64>) -> Column {
+        let mut left = self.system.residual.clone();
+        for (column, value) in used.iter().zip(beta.iter()) {
+            for (chunk, values) in left.iter_mut().zip(&self.pool.columns[*column]) {
+                *chunk -= values * *value;
+            }
+        }
+        left
+    }
+}
+
+impl Stand {
+    /// The part that is a function.
+    pub fn function_part(&self) -> Option<&Part> {
+        self.parts.iter().find(|part| part.spread.is_some())
+    }
+
+    /// Position among the columns in use.
+    pub fn position(&self, column: usize) -> Option<usize> {
+        self.used.iter().position(|used| *used == column)
+    }
+
+    /// What one part does to every row.
+    pub fn effect(&self, state: &State, part: &Part) -> Column {
+        let mut rows: Column =
+            state.system.chunks.iter().map(|chunk| DVector::zeros(chunk.rows.len())).collect();
+        for column in &part.trial.columns {
+            let value = self.position(*column).map_or(0.0, |position| self.estimate.beta[position]);
+            for (row, values) in rows.iter_mut().zip(&state.pool.columns[*column]) {
+                *row += values * value;
+            }
+        }
+        if let (Some(_), Some(function)) = (part.spread, &self.function) {
+            let made = state.profile(&part.trial).rows(state.system, function);
+            for (row, values) in rows.iter_mut().zip(made) {
+                *row += values;
+            }
+        }
+        rows
+    }
+}

@@ -140,6 +140,15 @@ impl System {
         self.chunks.iter().map(of_chunk).collect()
     }
 
+    /// Takes from a column the balances that are not `wanted`.
+    pub fn silence(&self, column: &mut Column, wanted: impl Fn(Kind) -> bool) {
+        for (chunk, values) in self.chunks.iter().zip(column) {
+            if !wanted(self.kind(chunk)) {
+                values.fill(0.0);
+            }
+        }
+    }
+
     /// The noise that makes what is left of the runs that are `fit` most likely, balance by balance.
     pub fn noises(&self, left: &Column, fit: &[bool]) -> Noises {
         let of = |(number, kind): (usize, &Kind)| {

@@ -51,6 +51,8 @@ pub(crate) struct Case<'a> {
     pub raw: Vec<Recorded>,
     /// Faults of sensors that the runs were corrected for, and by how much.
     pub corrections: Vec<Correction>,
+    /// Faults that turned out to be too small for anybody to mind.
+    pub petty: Vec<&'static str>,
     /// What the nominal model says.
     pub nominal: Vec<Said>,
     /// Whether each run may be fitted.
@@ -86,6 +88,7 @@ impl<'a> Case<'a> {
             raw: runs.clone(),
             runs,
             corrections: Vec::new(),
+            petty: Vec::new(),
             nominal: Vec::new(),
             fit,
             chosen,
@@ -285,7 +288,7 @@ fn check_names(all: &[Cause], registry: &Registry, options: &Options) -> Result<
     let mut known: Vec<&'static str> = all.iter().map(|cause| cause.id).collect();
     known.extend(registry.cards(headland_plugin::Kind::Effect).iter().map(|card| card.name));
     known.extend(["latency", "speed_scale", "force_scale", "accelerometer_bias", "accelerometer_tilt"]);
-    known.extend(["clock_drift", "quantisation", "dropout", "stuck_channel"]);
+    known.extend(["clock_drift", "quantisation", "dropout", "stuck_channel", "unlisted"]);
     known.sort_unstable();
     known.dedup();
     for id in options.without.iter().chain(&options.only) {

@@ -10,6 +10,8 @@ pub enum Class {
     Physics,
     /// Something of a sensor.
     Artefact,
+    /// Something that nobody listed.
+    Unlisted,
 }
 
 /// A parameter of a cause.
@@ -69,6 +71,8 @@ pub enum Form {
     OverTime,
     /// By a change of what was measured.
     Measured,
+    /// By an equation that was found.
+    Law,
 }
 
 /// A cause that is tried.
@@ -94,6 +98,54 @@ pub struct Cause {
     pub words: &'static str,
     /// The run that would show it best.
     pub experiment: &'static str,
+    /// The equation, where it was found.
+    pub law: Option<LawText>,
+}
+
+/// An equation that was found, as scenarios write it.
+#[derive(Clone, Debug)]
+pub struct LawText {
+    /// What it is in the effect `expression`.
+    pub role: &'static str,
+    /// The formula.
+    pub text: String,
+    /// Its constants, as the effect takes them.
+    pub constants_text: String,
+    /// Its constants.
+    pub constants: Vec<headland_symbolic::Constant>,
+    /// Channels that it depends on.
+    pub depends_on: Vec<&'static str>,
+    /// What the choice of it costs.
+    pub cost: f64,
+}
+
+impl LawText {
+    /// The text of a law of a balance.
+    pub fn new(law: &headland_symbolic::Law, kind: Kind) -> Self {
+        /// Every piece of it was one of about a dozen: ln of that.
+        const PER_PIECE: f64 = 2.5;
+        const CHANNELS: [(&str, &str); 7] = [
+            ("v", "speed_m_s"),
+            ("x", "position_m"),
+            ("t", "time_s"),
+            ("heading", "heading_rad"),
+            ("kappa", "curvature_per_m"),
+            ("temperature", "air_temperature_c"),
+            ("coasting", "coasting"),
+        ];
+        Self {
+            role: if kind == Kind::Motion { "resistance" } else { "auxiliary_power" },
+            text: law.text.clone(),
+            constants_text: law.constants_text(),
+            constants: law.constants.clone(),
+            depends_on: CHANNELS
+                .into_iter()
+                .filter(|(name, _)| law.names(name))
+                .map(|(_, channel)| channel)
+                .collect(),
+            cost: PER_PIECE * law.complexity as f64,
+        }
+    }
 }
 
 const MOTION: &[Kind] = &[Kind::Motion, Kind::Battery, Kind::Fuel];
@@ -114,6 +166,11 @@ fn shape(name: &'static str, unit: &'static str) -> Term {
 }
 
 impl Term {
+    /// The factor of a law that has its amplitudes in it.
+    pub fn amplitude() -> Self {
+        linear("amplitude", "1", 1.0)
+    }
+
     /// Held where it is.
     fn held(self, value: f64) -> Self {
         self.within(value, value)
@@ -145,6 +202,7 @@ fn cause(
         depends_on,
         words,
         experiment,
+        law: None,
     }
 }
 
@@ -163,6 +221,21 @@ impl Cause {
         self.class = Class::Artefact;
         self.form = Form::Measured;
         self
+    }
+
+    /// Its equation, in words of the catalogue or as it was found.
+    pub fn equation_text(&self) -> String {
+        match &self.law {
+            Some(LawText { role: "resistance", text, .. }) => format!("F = {text}"),
+            Some(LawText { text, .. }) => format!("P = {text}"),
+            None => self.equation.to_owned(),
+        }
+    }
+
+    /// Channels that it depends on.
+    pub fn channels(&self) -> Vec<String> {
+        let listed = self.law.as_ref().map_or(self.depends_on, |law| &law.depends_on);
+        listed.iter().map(|name| (*name).to_owned()).collect()
     }
 
     /// Whether it is a function of position or time.
@@ -193,6 +266,13 @@ impl Cause {
 
     /// The effect as a scenario writes it, with all parameters in the order of the terms.
     pub fn written(&self, values: &[f64]) -> String {
+        if let Some(law) = &self.law {
+            let LawText { role, text, constants_text, .. } = law;
+            return format!(
+                "expression({role}: \"{:?} * ({text})\", constants: {constants_text})",
+                values[0]
+            );
+        }
         match self.id {
             "wind" => {
                 let (north, east) = (values[0], values[1]);
@@ -640,7 +720,7 @@ fn sensors(all: &mut Vec<Cause>, around: &Around) {
         );
         all.push(artefact(
             "force_scale",
-            &[Kind::Motion],
+            &[Kind::Motion, Kind::Battery],
             linear("scale", "1", 0.05),
             "F_measured = (1 + k) F",
             "a force sensor with a wrong scale",
@@ -649,7 +729,7 @@ fn sensors(all: &mut Vec<Cause>, around: &Around) {
     }
     all.push(artefact(
         "speed_scale",
-        &[Kind::Motion, Kind::Slip],
+        &[Kind::Motion, Kind::Slip, Kind::Battery],
         linear("scale", "1", 0.03),
         "v_measured = (1 + k) v",
         "a speed sensor with a wrong scale",

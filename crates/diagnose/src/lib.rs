@@ -32,6 +32,7 @@ mod sensors;
 mod sharpen;
 mod state;
 mod trial;
+mod unlisted;
 mod words;
 
 pub use balance::Kind;
@@ -68,7 +69,8 @@ pub fn diagnose(
     sensors_first(&mut case, &mut look, &sound)?;
     look.sharpen(&case)?;
     let events = spells(&case, &mut look, &sound)?;
-    let Look { system, pool, found } = look;
+    let Look { system, mut pool, found } = look;
+    let found = unlisted::unlisted(&mut case, &system, &mut pool, found)?;
     let mut refined = refine::refine(&case, &system, &pool, &found)?;
     refine::spells(&case, &system, &events, &mut refined);
     let proof = prove::prove(&case, &system, &refined)?;
@@ -136,9 +138,16 @@ fn sensors_first(case: &mut Case, look: &mut Look, sound: &[Vec<bool>]) -> Resul
                 more = true;
             }
         }
-        if !more {
+        let small: Vec<&'static str> = corrections
+            .iter()
+            .filter(|correction| sensors::petty(case, correction.id, correction.value))
+            .map(|correction| correction.id)
+            .collect();
+        if !more && small.is_empty() {
             return Ok(());
         }
+        corrections.retain(|correction| !small.contains(&correction.id));
+        case.petty.extend(small);
         case.correct(corrections)?;
         *look = Look::at(case, sound)?;
     }

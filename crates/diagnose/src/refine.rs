@@ -87,6 +87,10 @@ pub fn refine(case: &Case, system: &System, pool: &Pool, found: &Found) -> Resul
     if refined.causes.iter().any(|cured| cured.function().is_some()) {
         return Ok(refined);
     }
+    // The constants of a law are what its search made of them.
+    if refined.causes.iter().any(|cured| cured.cause.form == Form::Law) {
+        return Ok(refined);
+    }
     let new: Vec<Cured> = physics.iter().map(|place| refined.causes[*place].clone()).collect();
     let (fitted, slots) = match nonlinear(case, system, pool, found, &new) {
         Ok(fitted) => fitted,

@@ -331,16 +331,16 @@ fn findings(
             })
             .collect();
         findings.push(FindingReport {
-            kind: if cured.cause.class == Class::Physics {
-                FindingKind::Physics
-            } else {
-                FindingKind::Artefact
+            kind: match cured.cause.class {
+                Class::Physics => FindingKind::Physics,
+                Class::Artefact => FindingKind::Artefact,
+                Class::Unlisted => FindingKind::Unlisted,
             },
             id: cured.cause.id.to_owned(),
             balance,
             sentence: words::sentence(&cured.cause, balance, &parameters, share, &rivals),
-            equation: cured.cause.equation.to_owned(),
-            depends_on: cured.cause.depends_on.iter().map(|name| (*name).to_owned()).collect(),
+            equation: cured.cause.equation_text(),
+            depends_on: cured.cause.channels(),
             stretches: stretches(&case.runs, &effect.runs),
             parameters,
             share_of_mismatch: share,
@@ -402,6 +402,8 @@ fn verdict(findings: &[FindingReport]) -> Verdict {
     let any = |kind: FindingKind| findings.iter().any(|finding| finding.kind == kind);
     if findings.is_empty() {
         Verdict::None
+    } else if findings.first().is_some_and(|finding| finding.kind == FindingKind::Unlisted) {
+        Verdict::Unlisted
     } else if findings.first().is_some_and(doubtful) {
         Verdict::CannotTell
     } else if any(FindingKind::Physics) && any(FindingKind::Artefact) {
@@ -444,6 +446,15 @@ fn parameters(cured: &Cured) -> Vec<ParameterReport> {
     };
     if let Some(function) = cured.function() {
         return function_parameters(&cured.cause, function);
+    }
+    if let (Some(law), Some((factor, _))) = (&cured.cause.law, cured.values.first()) {
+        // Amplitudes come out in newtons or watts; the factor that was estimated beside belongs to them.
+        let constant = |constant: &headland_symbolic::Constant| {
+            let factor = if ["N", "W"].contains(&constant.unit.as_str()) { *factor } else { 1.0 };
+            let (value, half) = (factor * constant.value, HALF_95 * factor * constant.sd.unwrap_or(0.0));
+            one(&constant.name, value, [value - half, value + half], &constant.unit)
+        };
+        return law.constants.iter().map(constant).collect();
     }
     match cured.cause.id {
         "wind" => {

@@ -8,7 +8,7 @@ use crate::contest::Contest;
 use crate::gram::{Column, Estimate, Reduced};
 use crate::noise::{Noises, Shape};
 use crate::profile::Function;
-use crate::sensors::SMALL_SCALE;
+use crate::sensors::petty;
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Trial};
 use headland_calibrate::statistics::{Draws, quantile_of_sorted, sorted};
@@ -71,12 +71,18 @@ pub struct Found {
     pub before: Column,
     /// What each accepted cause does to every row.
     pub effects: Vec<Column>,
+    /// The set that was accepted.
+    pub stand: Stand,
+    /// The free parameters alone.
+    pub first: Stand,
+    /// What a growth had to exceed.
+    pub needed: f64,
 }
 
 /// At most so many causes.
 const MOST_CAUSES: usize = 3;
 /// So many sets are grown side by side, and each by so many causes.
-const BEAM: usize = 4;
+const BEAM: usize = 6;
 /// Each cause more makes a set less likely from the start: odds of one to twenty.
 const PER_CAUSE: f64 = 3.0;
 /// A growth of ln p within this of the best one does not tell the two apart: odds of one to twenty.
@@ -103,6 +109,7 @@ pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]
     let first = state.settle(Vec::new(), &system.noises(&system.residual, &case.fit))?;
     let mut tried: Vec<Round> = Vec::new();
     let mut best = first.clone();
+    let mut others: Vec<Stand> = Vec::new();
     let mut open = vec![first.clone()];
     let mut needed = LEAST_GAIN;
     for _ in 0..MOST_CAUSES {
@@ -126,15 +133,25 @@ pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]
         grown.dedup_by(|one, other| same(one, other));
         grown.truncate(BEAM);
         let Some(top) = grown.first() else { break };
-        let worth = |stand: &Stand| stand.score - PER_CAUSE * stand.parts.len() as f64;
+        others.extend(grown.iter().cloned());
         if worth(top) > worth(&best) {
             best = top.clone();
         }
         open = grown;
     }
-    let best = state.without_needless(best, needed)?;
-    let (best, unproven) = state.without_unproven(best)?;
-    Some(state.found(best, &first, (tried, unproven), needed))
+    let mut found = state.conclude(best, first, tried, needed)?;
+    state.sets_as_good(&mut found, &others);
+    Some(found)
+}
+
+/// As it was found, but with another set of causes.
+pub fn concluded(state: &State, best: Stand, found: &Found) -> Option<Found> {
+    state.conclude(best, found.first.clone(), found.tried.clone(), found.needed)
+}
+
+/// How good a set is, with what every cause more costs.
+pub fn worth(stand: &Stand) -> f64 {
+    stand.score - PER_CAUSE * stand.parts.len() as f64
 }
 
 /// Whether two sets hold the same causes.
@@ -160,6 +177,13 @@ impl Contest {
 }
 
 impl State<'_> {
+    /// What a set comes down to, cause by cause.
+    fn conclude(&self, best: Stand, first: Stand, tried: Vec<Round>, needed: f64) -> Option<Found> {
+        let best = self.without_needless(best, needed)?;
+        let (best, unproven) = self.without_unproven(best)?;
+        Some(self.found(best, first, (tried, unproven), needed))
+    }
+
     /// The set without causes that bring less beside the others than chance would.
     fn without_needless(&self, mut best: Stand, needed: f64) -> Option<Stand> {
         loop {
@@ -175,6 +199,46 @@ impl State<'_> {
                 return Some(best);
             }
             best = top;
+        }
+    }
+
+    /// Other sets that are as good: what they hold otherwise stands beside the cause that it is most like.
+    fn sets_as_good(&self, found: &mut Found, others: &[Stand]) {
+        let best = worth(&found.stand);
+        let Some(reduced) = self.reduced(&found.stand.noises, None) else { return };
+        let nuisance: Vec<usize> = (0..self.pool.nuisance).collect();
+        for other in others.iter().filter(|other| worth(other) > best - TOLERANCE) {
+            for part in &other.parts {
+                let id = self.id(&part.trial);
+                let named = |one: &Accepted| {
+                    let rival = |rival: &Rival| self.case.causes[rival.cause].id == id;
+                    self.id(&one.trial) == id || one.rivals.iter().any(rival)
+                };
+                // Only where the other set does without some of ours is it an alternative, and only what it has more.
+                let replaced: Vec<usize> = (0..found.accepted.len())
+                    .filter(|place| {
+                        let own = self.id(&found.accepted[*place].trial);
+                        !other.parts.iter().any(|part| self.id(&part.trial) == own)
+                    })
+                    .collect();
+                if found.accepted.iter().any(named) || replaced.is_empty() {
+                    continue;
+                }
+                let like = |place: &usize| {
+                    let columns = &found.accepted[*place].trial.columns;
+                    reduced.squared_correlation(columns, &part.trial.columns, &nuisance, &self.sd())
+                };
+                let likest = replaced.into_iter().map(|place| (place, like(&place)));
+                if let Some((place, correlation)) = likest.max_by(|one, other| one.1.total_cmp(&other.1)) {
+                    let gain = found.accepted[place].gain + worth(other) - best;
+                    let cause = part.trial.cause;
+                    found.accepted[place].rivals.push(Rival {
+                        cause,
+                        gain,
+                        squared_correlation: correlation,
+                    });
+                }
+            }
         }
     }
 
@@ -201,7 +265,7 @@ impl State<'_> {
     fn found(
         &self,
         best: Stand,
-        first: &Stand,
+        first: Stand,
         (tried, unproven): (Vec<Round>, Vec<usize>),
         needed: f64,
     ) -> Found {
@@ -243,11 +307,14 @@ impl State<'_> {
             unproven,
             accepted,
             noises: (first.noises.clone(), best.noises.clone()),
-            used: best.used,
-            estimate: best.estimate,
-            left: best.left,
+            used: best.used.clone(),
+            estimate: best.estimate.clone(),
+            left: best.left.clone(),
             before: first.left.clone(),
             effects,
+            stand: best,
+            first,
+            needed,
         }
     }
 
@@ -351,12 +418,8 @@ impl State<'_> {
     /// Whether a sensor's fault is one that anybody would mind.
     fn beyond_the_sensor(&self, stand: &Stand, part: &Part) -> bool {
         let position = part.trial.columns.first().and_then(|column| stand.position(*column));
-        let value = position.map_or(0.0, |position| stand.estimate.beta[position].abs());
-        match self.id(&part.trial) {
-            "latency" => value > crate::balance::longest_period_s(&self.case.runs),
-            "speed_scale" | "force_scale" => value > SMALL_SCALE,
-            _ => true,
-        }
+        let value = position.map_or(0.0, |position| stand.estimate.beta[position]);
+        !petty(self.case, self.id(&part.trial), value)
     }
 
     /// A function over position that these recordings give to slopes and to soft ground alike: where it rises in places

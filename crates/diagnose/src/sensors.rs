@@ -1,6 +1,6 @@
 //! What a sensor's fault does to the rows, and recordings as they would be without it.
 
-use crate::balance::{Kind, longest_period_s};
+use crate::balance::{Kind, change, longest_period_s};
 use crate::gram::Column;
 use crate::recorded::Recorded;
 use crate::said::Said;
@@ -13,7 +13,7 @@ const PITCH: &str = "pitch";
 /// How much, usually [rad s²/m]: 0.0015 to 0.0023 rad at 0.7 m/s², for a tractor 1.3 m high on 3.6 m of wheelbase.
 const PITCH_RAD_S2_M: f64 = 0.004;
 /// A scale that nobody would call wrong.
-pub const SMALL_SCALE: f64 = 0.005;
+const SMALL_SCALE: f64 = 0.005;
 
 /// A fault that is free in every diagnosis.
 pub struct Small {
@@ -21,6 +21,15 @@ pub struct Small {
     pub column: Column,
     /// Its usual size.
     pub sd: f64,
+}
+
+/// Whether a fault of this size is one that nobody would mind.
+pub fn petty(case: &Case, id: &str, value: f64) -> bool {
+    match id {
+        "latency" => value.abs() <= longest_period_s(&case.runs),
+        "speed_scale" | "force_scale" => value.abs() <= SMALL_SCALE,
+        _ => false,
+    }
 }
 
 /// What every sensor does a little: half a sampling period of latency, half a per cent of scale. Nobody would call it a
@@ -36,7 +45,12 @@ pub fn small_faults(case: &Case, system: &System) -> Result<Vec<Small>, Diagnose
     // What was corrected before is free by far more than a little, and once is enough.
     for (kind, id, sd) in small {
         if system.has(kind) && !case.corrections.iter().any(|correction| correction.id == id) {
-            all.push(Small { column: fault(case, system, id, sd)?, sd });
+            let mut column = fault(case, system, id, sd)?;
+            if id == "latency" {
+                // What drives a battery's current has latencies of its own.
+                system.silence(&mut column, |own| own == Kind::Motion);
+            }
+            all.push(Small { column, sd });
         }
     }
     Ok(all)
@@ -56,7 +70,8 @@ pub fn fault(case: &Case, system: &System, id: &str, step: f64) -> Result<Column
                     Kind::Motion => motion(id, step, (before, &case.nominal[run]), (after, &said[run])),
                     Kind::Parity => less("specific_force_m_s2", before, after),
                     Kind::Slip => less("wheel_speed_m_s", before, after),
-                    Kind::Battery | Kind::Fuel => Vec::new(),
+                    // What drives the motor turns with the wheels: a wrong speed is a wrong power.
+                    Kind::Battery | Kind::Fuel => change(kind, before, &said[run], &case.nominal[run]),
                 };
                 samples.iter().map(|value| value / step).collect()
             })

@@ -12,6 +12,8 @@ const MOST: usize = 3;
 const CLOSE: f64 = 0.5;
 /// First factor by which a parameter is moved: half way to the next point of a grid of doubles.
 const FACTOR: f64 = 1.4;
+/// Moves at one factor.
+const MOST_MOVES: usize = 5;
 /// The factor's root is taken so many times.
 const ROUNDS: usize = 4;
 
@@ -88,18 +90,25 @@ fn best(
     let mut greatest = likely(&shape)?;
     let mut factor = FACTOR;
     for _ in 0..ROUNDS {
-        for place in 0..shape.len() {
-            if terms[place].low >= terms[place].high || shape[place] == 0.0 {
-                continue;
-            }
-            for factor in [factor, 1.0 / factor] {
-                let mut moved = shape.clone();
-                moved[place] *= factor;
-                let gain = likely(&moved)?;
-                if gain > greatest {
-                    (shape, greatest) = (moved, gain);
-                    break;
+        // At one factor until nothing is better.
+        for _ in 0..MOST_MOVES {
+            let mut moved = false;
+            for place in 0..shape.len() {
+                if terms[place].low >= terms[place].high || shape[place] == 0.0 {
+                    continue;
                 }
+                for factor in [factor, 1.0 / factor] {
+                    let mut other = shape.clone();
+                    other[place] *= factor;
+                    let gain = likely(&other)?;
+                    if gain > greatest {
+                        (shape, greatest, moved) = (other, gain, true);
+                        break;
+                    }
+                }
+            }
+            if !moved {
+                break;
             }
         }
         factor = factor.sqrt();

@@ -53,7 +53,8 @@ const WIDER: f64 = 3.0;
 fn choice(cause: &Cause) -> f64 {
     const BY_THE_CLOCK: f64 = 3.0;
     let clock = cause.terms.iter().any(|term| term.name == "from_s");
-    (cause.shapes.len().max(1) as f64).ln() + if clock { BY_THE_CLOCK } else { 0.0 }
+    let found = cause.law.as_ref().map_or(0.0, |law| law.cost);
+    found + (cause.shapes.len().max(1) as f64).ln() + if clock { BY_THE_CLOCK } else { 0.0 }
 }
 
 impl<'a> State<'a> {

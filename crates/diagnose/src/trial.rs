@@ -86,7 +86,8 @@ pub fn pool(case: &Case, system: &System) -> Result<Pool, DiagnoseError> {
     pool.nuisance = pool.columns.len();
     for (number, cause) in case.causes.iter().enumerate() {
         case.step(cause.id)?;
-        if case.corrections.iter().any(|correction| correction.id == cause.id) {
+        let corrected = case.corrections.iter().any(|correction| correction.id == cause.id);
+        if corrected || case.petty.contains(&cause.id) {
             continue;
         }
         for shape in &cause.shapes {
@@ -109,8 +110,9 @@ pub fn add_trial(
     for (term, part) in cause.terms.iter().enumerate().filter(|(_, term)| term.linear) {
         let step = CAUSE_STEP * part.scale;
         let column = if cause.form == Form::Measured {
-            let column = fault(case, system, cause.id, shape.first().copied().unwrap_or(step))?;
-            kept(system, cause, column)
+            let mut column = fault(case, system, cause.id, shape.first().copied().unwrap_or(step))?;
+            system.silence(&mut column, |kind| cause.balances.contains(&kind));
+            column
         } else {
             let text = |run: &Recorded| signature(cause, term, step, shape, run);
             let kinds: Vec<Kind> =
@@ -129,16 +131,6 @@ pub fn add_trial(
 /// Nothing, in every run.
 fn silent(case: &Case) -> Vec<Vec<f64>> {
     vec![Vec::new(); case.runs.len()]
-}
-
-/// A column without the balances that a cause does not touch.
-fn kept(system: &System, cause: &Cause, mut column: Column) -> Column {
-    for (chunk, values) in system.chunks.iter().zip(&mut column) {
-        if !cause.balances.contains(&system.kind(chunk)) {
-            values.fill(0.0);
-        }
-    }
-    column
 }
 
 /// Whether a cause is tried on a balance: causes of motion are looked for in powers only where no force was measured.

@@ -253,6 +253,7 @@ mod tests {
                 name: name.to_owned(),
                 unit: unit.to_owned(),
                 runs: vec![situations.iter().map(|at| value(name, at)).collect()],
+                finest: 0.0,
             })
             .collect();
         let residual = vec![vec![0.0; situations.len()]];

@@ -132,6 +132,7 @@ fn waves_of(bench: &Bench, index: usize) -> usize {
     let by_samples = of.spread() / (SAMPLES * of.step.max(f64::MIN_POSITIVE));
     // Half a cycle a row is the most that rows can hold of something that follows the clock.
     let longest = bench.fitted.iter().map(|(_, rows)| *rows).max().unwrap_or(0);
+    let by_samples = if of.finest > 0.0 { by_samples.min(of.spread() / of.finest) } else { by_samples };
     let by_rows = if of.known.name == "t" { 0.5 * longest as f64 } else { f64::INFINITY };
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most MOST_WAVES")]
     let count = (by_samples.min(by_rows) / CYCLES_APART).min(MOST_WAVES as f64) as usize;

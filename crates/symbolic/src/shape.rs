@@ -172,15 +172,20 @@ impl Factor {
         const FEWEST_CYCLES: f64 = 0.4;
         /// Scales, as shares of the spread: below the first nothing is resolved, above the second it is a straight line.
         const SCALES: (f64, f64) = (0.01, 3.0);
+        /// A step or a bump is as wide as this share of the finest wave at least.
+        const FINER: f64 = 0.25;
         /// Centres, as shares of the spread.
         const CENTRES: (f64, f64) = (-0.1, 1.1);
         /// Powers: below the first a constant, above the second a wall.
         const POWERS: (f64, f64) = (0.2, 6.0);
         match free {
-            Free::Scale if self.shape == Shape::Wave => self.scale = of.spread() / inner.max(FEWEST_CYCLES),
+            Free::Scale if self.shape == Shape::Wave => {
+                self.scale = (of.spread() / inner.max(FEWEST_CYCLES)).max(of.finest);
+            }
             Free::Scale => {
                 let largest = if of.known.kind == Kind::Level { of.spread() } else { of.size() };
-                self.scale = inner.exp().clamp(SCALES.0 * of.spread(), SCALES.1 * largest);
+                let smallest = (SCALES.0 * of.spread()).max(FINER * of.finest);
+                self.scale = inner.exp().clamp(smallest, (SCALES.1 * largest).max(smallest));
             }
             Free::Centre => self.centre = of.low + of.spread() * inner.clamp(CENTRES.0, CENTRES.1),
             Free::Power => self.shape = Shape::FreePower(inner.clamp(POWERS.0, POWERS.1)),

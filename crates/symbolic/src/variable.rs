@@ -15,6 +15,9 @@ pub struct Variable {
     pub unit: String,
     /// Samples of every run.
     pub runs: Vec<Vec<f64>>,
+    /// The finest structure that the rows can show, in its unit: shorter waves would only be seen by their beat with the
+    /// rows; 0 where the samples themselves are the limit.
+    pub finest: f64,
 }
 
 /// How a variable may enter.
@@ -85,6 +88,8 @@ pub(crate) struct Checked<'a> {
     pub negative: bool,
     /// Median of the absolute steps between samples that are not zero.
     pub step: f64,
+    /// The finest structure that the rows can show.
+    pub finest: f64,
 }
 
 impl Checked<'_> {
@@ -162,7 +167,8 @@ pub(crate) fn check<'a>(variables: &'a [Variable], fit: &[bool]) -> Result<Vec<C
         steps.sort_by(f64::total_cmp);
         let step = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
         let negative = variable.runs.iter().flatten().any(|value| *value < 0.0);
-        let checked = Checked { known, runs: &variable.runs, low, high, negative, step };
+        let checked =
+            Checked { known, runs: &variable.runs, low, high, negative, step, finest: variable.finest };
         if checked.spread() > LEAST_SPREAD * checked.size() {
             all.push(checked);
         }
@@ -175,7 +181,12 @@ mod tests {
     use super::*;
 
     fn variable(name: &str, unit: &str) -> Variable {
-        Variable { name: name.to_owned(), unit: unit.to_owned(), runs: vec![vec![0.0, 1.0, 3.0]] }
+        Variable {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            runs: vec![vec![0.0, 1.0, 3.0]],
+            finest: 0.0,
+        }
     }
 
     #[test]

@@ -192,6 +192,7 @@ impl Plant {
             name: name.to_owned(),
             unit: unit.to_owned(),
             runs: self.runs.iter().map(|run| run.iter().map(of).collect()).collect(),
+            finest: 0.0,
         };
         vec![
             one("v", "m/s", |at| at.v),

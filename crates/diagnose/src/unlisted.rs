@@ -1,0 +1,283 @@
+//! A cause that nobody listed: an equation is looked for in what the free parameters leave, and in what the listed causes
+//! leave. It is claimed where it makes the recordings more likely than the listed causes do, with all that it cost to
+//! find it.
+
+use crate::balance::Kind;
+use crate::catalogue::{Cause, Class, Form, LawText};
+use crate::noise::{Noises, Whiteners};
+use crate::search::{Found, concluded, worth};
+use crate::state::{Part, Stand, State};
+use crate::trial::{Pool, Trial};
+use crate::{Case, DiagnoseError, System};
+use headland_calibrate::statistics::median;
+use headland_symbolic::{Law, Nuisance, Options, Problem, Rows, SymbolicError, Target, Variable, find};
+
+/// A law has to be worth so much more than the listed causes: odds of four hundred to one.
+const MARGIN: f64 = 6.0;
+/// And by this share of what the listed causes bring, for each that they are fewer than three: the shape of a listed cause
+/// is known from elsewhere, and a formula that is free to bend follows a recording closer than any law of physics.
+const BETTER: f64 = 0.1;
+/// A law works in at least this share of the rows, by the participation ratio of its squares.
+const EVERYWHERE: f64 = 0.04;
+/// A wave takes so many blocks of samples.
+const BLOCKS: f64 = 4.0;
+
+/// Looks for a law, and puts it in the place of what was found or beside it.
+pub fn unlisted(
+    case: &mut Case,
+    system: &System,
+    pool: &mut Pool,
+    found: Found,
+) -> Result<Found, DiagnoseError> {
+    if !case.wanted("unlisted") {
+        return Ok(found);
+    }
+    let mut found = found;
+    for (kind, target) in [(Kind::Motion, Target::Force), (Kind::Battery, Target::Power)] {
+        if system.has(kind) {
+            case.step("unlisted causes")?;
+            found = beside(case, system, pool, found, (kind, target))?;
+        }
+    }
+    Ok(found)
+}
+
+fn beside(
+    case: &mut Case,
+    system: &System,
+    pool: &mut Pool,
+    found: Found,
+    (kind, target): (Kind, Target),
+) -> Result<Found, DiagnoseError> {
+    let listed = found.stand.parts.clone();
+    let mut candidates: Vec<Vec<Part>> = Vec::new();
+    let mut starts = vec![Vec::new()];
+    if !listed.is_empty() {
+        starts.push(listed);
+    }
+    for start in starts {
+        let Some(mut law) = law(case, system, pool, &start, &found.stand.noises, (kind, target))? else {
+            continue;
+        };
+        let mut part = add(case, system, pool, &law, kind);
+        // Once more with the noise that is left then: what was fitted to the whole mismatch hides slow laws.
+        let state = State { case, system, pool, fit: &case.fit };
+        let with = |part: &Part| start.iter().cloned().chain([part.clone()]).collect::<Vec<Part>>();
+        if let Some(settled) = state.settle(with(&part), &found.stand.noises)
+            && let Some(better) = self::law(case, system, pool, &start, &settled.noises, (kind, target))?
+        {
+            law = better;
+            part = add(case, system, pool, &law, kind);
+        }
+        candidates.push(with(&part));
+        candidates.push(vec![part]);
+    }
+    let state = State { case, system, pool, fit: &case.fit };
+    let mut best: Option<Stand> = None;
+    for parts in candidates {
+        let Some(stand) = state.settle(parts, &found.stand.noises) else { continue };
+        for stand in [state.with_listed(&stand), Some(stand)].into_iter().flatten() {
+            if !state.impossible(&stand.parts, &stand.estimate)
+                && state.works_widely(&stand)
+                && best.as_ref().is_none_or(|best| worth(&stand) > worth(best))
+            {
+                best = Some(stand);
+            }
+        }
+    }
+    match best {
+        Some(best) if worth(&best) > worth(&found.stand) + margin(&found) => {
+            Ok(concluded(&state, best, &found).unwrap_or(found))
+        }
+        _ => Ok(found),
+    }
+}
+
+/// How much better than what was found a law has to be.
+fn margin(found: &Found) -> f64 {
+    let listed = found.stand.parts.len();
+    let fewer = if listed == 0 { 0.0 } else { 3usize.saturating_sub(listed) as f64 };
+    MARGIN + BETTER * fewer * (worth(&found.stand) - worth(&found.first)).max(0.0)
+}
+
+impl State<'_> {
+    /// Whether the laws of a set are at work in more than a few rows.
+    fn works_widely(&self, stand: &Stand) -> bool {
+        let laws = stand.parts.iter().filter(|part| self.cause(&part.trial).law.is_some());
+        laws.into_iter().all(|part| {
+            let effect = stand.effect(self, part);
+            let (mut squares, mut fourths, mut count) = (0.0, 0.0, 0usize);
+            for (chunk, rows) in self.system.chunks.iter().zip(&effect) {
+                if self.fit[chunk.run] && self.cause(&part.trial).balances.contains(&self.system.kind(chunk))
+                {
+                    squares += rows.norm_squared();
+                    fourths += rows.iter().map(|value| value.powi(4)).sum::<f64>();
+                    count += rows.len();
+                }
+            }
+            squares * squares > EVERYWHERE * count as f64 * fourths
+        })
+    }
+
+    /// A set with the listed cause beside that makes it likeliest.
+    fn with_listed(&self, stand: &Stand) -> Option<Stand> {
+        let reduced = self.reduced(&stand.noises, stand.function_part())?;
+        self.contest(stand, &reduced, &[]).into_iter().next().map(|one| one.stand)
+    }
+}
+
+/// The regressor of a law.
+fn add(case: &mut Case, system: &System, pool: &mut Pool, law: &Law, kind: Kind) -> Part {
+    let number = case.causes.len();
+    case.causes.push(Cause::of_law(LawText::new(law, kind), kind));
+    let silent = || vec![Vec::new(); case.runs.len()];
+    let column = pool.columns.len();
+    pool.columns.push(system.column(|own| if own == kind { law.prediction.clone() } else { silent() }));
+    // Its amplitudes are in it: what is estimated is one, nearly.
+    pool.sd.push(1.0);
+    let trial = Trial { cause: number, shape: Vec::new(), columns: vec![column], terms: vec![0] };
+    pool.trials.push(trial.clone());
+    Part { trial, spread: None }
+}
+
+/// From samples to whitened rows of one balance.
+struct Whitening<'a> {
+    system: &'a System,
+    whiteners: Whiteners,
+    kind: Kind,
+}
+
+impl Whitening<'_> {
+    fn of(&self, run: usize, values: impl Fn(usize) -> nalgebra::DVector<f64>) -> Vec<f64> {
+        let chunks = self.system.chunks.iter().enumerate();
+        let own = chunks.filter(|(_, chunk)| chunk.run == run && self.system.kind(chunk) == self.kind);
+        own.flat_map(|(index, chunk)| {
+            self.whiteners.of(chunk).whiten(&values(index)).iter().copied().collect::<Vec<_>>()
+        })
+        .collect()
+    }
+}
+
+impl Rows for Whitening<'_> {
+    fn rows(&self, run: usize, samples: &[f64]) -> Vec<f64> {
+        self.of(run, |index| {
+            let rows = &self.system.chunks[index].rows;
+            nalgebra::DVector::from_iterator(rows.len(), rows.iter().map(|row| row.mean(samples)))
+        })
+    }
+}
+
+/// The law that is worth it, beside what is known.
+fn law(
+    case: &Case,
+    system: &System,
+    pool: &Pool,
+    beside: &[Part],
+    noises: &Noises,
+    (kind, target): (Kind, Target),
+) -> Result<Option<Law>, DiagnoseError> {
+    let Some(whiteners) = noises.whiteners(&system.chunks) else { return Ok(None) };
+    let state = State { case, system, pool, fit: &case.fit };
+    let whitening = Whitening { system, whiteners, kind };
+    let runs = 0..case.runs.len();
+    // What a function does is taken away; all other causes are free beside the law.
+    let stand = if beside.iter().any(|part| part.spread.is_some()) {
+        state.settle(beside.to_vec(), noises)
+    } else {
+        None
+    };
+    let residual = match (&stand, beside.iter().find(|part| part.spread.is_some())) {
+        (Some(stand), Some(part)) => {
+            let effect = stand.effect(&state, part);
+            system.residual.iter().zip(effect).map(|(residual, effect)| residual - effect).collect()
+        }
+        _ => system.residual.clone(),
+    };
+    let residual: Vec<Vec<f64>> =
+        runs.clone().map(|run| whitening.of(run, |index| residual[index].clone())).collect();
+    let parametric: Vec<Part> = beside.iter().filter(|part| part.spread.is_none()).cloned().collect();
+    let all_sd = state.sd();
+    let nuisances: Vec<Nuisance> = state
+        .columns(&parametric)
+        .into_iter()
+        .map(|column| Nuisance {
+            sd: all_sd[column],
+            runs: runs
+                .clone()
+                .map(|run| whitening.of(run, |index| pool.columns[column][index].clone()))
+                .collect(),
+        })
+        .collect();
+    let variables = variables(case);
+    let problem = Problem {
+        variables: &variables,
+        target,
+        rows: &whitening,
+        residual: &residual,
+        nuisances: &nuisances,
+        fit: &case.fit,
+    };
+    let options = Options { seed: case.options.seed, ..Options::default() };
+    match find(&problem, &options, &|| case.progress.interrupted()) {
+        Ok(found) => Ok(found.law().cloned()),
+        Err(SymbolicError::Interrupted) => Err(DiagnoseError::Interrupted),
+        // What is no problem for it has no law either: no rows, a run without samples.
+        Err(_) => Ok(None),
+    }
+}
+
+/// What may stand in a law: of the situation, never made of what is to be explained.
+fn variables(case: &Case) -> Vec<Variable> {
+    let channel = |name: &str| -> Option<Vec<Vec<f64>>> {
+        case.runs.iter().map(|run| run.measured.trace.get(name).map(<[f64]>::to_vec)).collect()
+    };
+    let of = |values: &dyn Fn(&crate::recorded::Recorded) -> Vec<f64>| {
+        Some(case.runs.iter().map(values).collect())
+    };
+    let block_s = crate::balance::block_s(&case.runs);
+    let speeds: Vec<f64> = case.runs.iter().flat_map(|run| run.motion.value.iter().copied()).collect();
+    let finest = |name: &str| match name {
+        "t" => BLOCKS * block_s,
+        "x" => BLOCKS * block_s * median(&speeds).abs(),
+        _ => 0.0,
+    };
+    let offered: [(&str, &str, Option<Vec<Vec<f64>>>); 7] = [
+        ("v", "m/s", of(&|run| run.motion.value.clone())),
+        ("x", "m", of(&|run| run.position_m.clone())),
+        ("t", "s", of(&|run| run.measured.trace.time_s().to_vec())),
+        ("heading", "rad", channel("heading_rad")),
+        ("kappa", "1/m", channel("curvature_per_m")),
+        ("temperature", "°C", channel("air_temperature_c")),
+        ("coasting", "1", channel("coasting")),
+    ];
+    let whole = |runs: &Vec<Vec<f64>>| runs.iter().flatten().all(|value| value.is_finite());
+    let variable = |(name, unit, runs): (&str, &str, Option<Vec<Vec<f64>>>)| {
+        Some(Variable {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            runs: runs.filter(whole)?,
+            finest: finest(name),
+        })
+    };
+    offered.into_iter().filter_map(variable).collect()
+}
+
+impl Cause {
+    /// A cause that is a law.
+    fn of_law(law: LawText, kind: Kind) -> Self {
+        let balances: &'static [Kind] = if kind == Kind::Motion { &[Kind::Motion] } else { &[Kind::Battery] };
+        Self {
+            id: "unlisted",
+            class: Class::Unlisted,
+            balances,
+            form: Form::Law,
+            terms: vec![crate::catalogue::Term::amplitude()],
+            shapes: vec![Vec::new()],
+            equation: "",
+            depends_on: &[],
+            words: "a cause that nobody listed",
+            experiment: "repeat the runs at other speeds, places and times than these, and see whether the equation holds",
+            law: Some(law),
+        }
+    }
+}

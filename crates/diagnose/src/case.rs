@@ -53,6 +53,8 @@ pub(crate) struct Case<'a> {
     pub corrections: Vec<Correction>,
     /// Faults that turned out to be too small for anybody to mind.
     pub petty: Vec<&'static str>,
+    /// Names of the paths, by the number that the runs have of them; none where a run drove alone.
+    pub paths: Vec<Option<String>>,
     /// What the nominal model says.
     pub nominal: Vec<Said>,
     /// Whether each run may be fitted.
@@ -82,6 +84,10 @@ impl<'a> Case<'a> {
             return Err(headland_calibrate::study::StudyError::AllHeldOut.into());
         }
         let (fit, chosen) = split(&marked);
+        let mut paths = vec![None; runs.len()];
+        for (run, described) in runs.iter().zip(&recording.runs) {
+            paths[run.path].clone_from(&described.path);
+        }
         let mut case = Self {
             study,
             registry,
@@ -89,6 +95,7 @@ impl<'a> Case<'a> {
             runs,
             corrections: Vec::new(),
             petty: Vec::new(),
+            paths,
             nominal: Vec::new(),
             fit,
             chosen,

@@ -12,13 +12,16 @@
 mod balance;
 mod case;
 mod catalogue;
+mod change_points;
 mod contest;
+mod contradiction;
 mod crossval;
 mod error;
 mod events;
 mod faults;
 mod gram;
 mod locate;
+mod map;
 mod noise;
 mod profile;
 mod prove;
@@ -38,9 +41,10 @@ mod words;
 pub use balance::Kind;
 pub use case::{Options, Progress};
 pub use error::DiagnoseError;
+pub use map::{Mismatch, Over};
 pub use report::{
     Calibrated, Diagnosed, Diagnosis, FindingKind, FindingReport, Fit, FitRuns, Interval, LeftOver,
-    ParameterReport, RivalReport as Rival, Tried, Verdict,
+    ParameterReport, RivalReport as Rival, Shown, Tried, Verdict,
 };
 
 pub(crate) use balance::System;
@@ -65,6 +69,10 @@ pub fn diagnose(
     let mut case = Case::new(scenario, recording, registry, options, progress)?;
     let (mut faults, sound) = faults::faults(&case.runs);
     faults.retain(|fault| case.wanted(fault.id));
+    let against = contradiction::statements(&case, &sound);
+    if !against.is_empty() {
+        return report::inconclusive(&case, &sound, &against);
+    }
     let mut look = Look::at(&case, &sound)?;
     sensors_first(&mut case, &mut look, &sound)?;
     look.sharpen(&case)?;
@@ -73,8 +81,10 @@ pub fn diagnose(
     let found = unlisted::unlisted(&mut case, &system, &mut pool, found)?;
     let mut refined = refine::refine(&case, &system, &pool, &found)?;
     refine::spells(&case, &system, &events, &mut refined);
+    let withheld = contradiction::withhold(&case, &mut refined);
     let proof = prove::prove(&case, &system, &refined)?;
-    report::report(&case, &system, &found, &refined, &proof, &faults)
+    let beside = report::Beside { faults: &faults, events: &events, withheld };
+    report::report(&case, &system, &found, &refined, &proof, &beside)
 }
 
 /// The rows, the regressors and what they tell.
@@ -114,7 +124,7 @@ impl Look {
 /// Takes the faults of sensors that were found out of the recordings, and looks again, until nothing is left of them.
 fn sensors_first(case: &mut Case, look: &mut Look, sound: &[Vec<bool>]) -> Result<(), DiagnoseError> {
     /// A fault that is not linear takes some rounds.
-    const ROUNDS: usize = 6;
+    const ROUNDS: usize = 4;
     /// A rest that is this share of the fault, or this share of its usual size, is none.
     const NEARLY: f64 = 0.05;
     for _ in 0..ROUNDS {

@@ -162,13 +162,37 @@ impl Noise {
     }
 }
 
+/// Rows on their way through a whitener, one by one.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Passing {
+    /// How many came before.
+    rows: usize,
+    before: f64,
+    /// The last and the last but one, white.
+    white: [f64; 2],
+}
+
+impl Passing {
+    /// As far as another, and nothing but zeros so far.
+    pub fn behind(other: Self) -> Self {
+        Self { rows: other.rows, ..Self::default() }
+    }
+}
+
 impl Whitener {
+    /// One more row, white. There must not be more than it was made for.
+    pub fn step(&self, passing: &mut Passing, value: f64) -> f64 {
+        let [left2, left1, own] = self.factor[passing.rows];
+        let [one, two] = passing.white;
+        let white = (value - self.persistence * passing.before - left1 * one - left2 * two) / own;
+        *passing = Passing { rows: passing.rows + 1, before: value, white: [white, one] };
+        white
+    }
+
     fn each(&self, values: &[f64], mut take: impl FnMut(usize, f64)) {
-        let (mut before, mut one, mut two) = (0.0, 0.0, 0.0);
-        for (row, (value, [left2, left1, own])) in values.iter().zip(&self.factor).enumerate() {
-            let white = (value - self.persistence * before - left1 * one - left2 * two) / own;
-            (before, two, one) = (*value, one, white);
-            take(row, white);
+        let mut passing = Passing::default();
+        for (row, value) in values.iter().enumerate() {
+            take(row, self.step(&mut passing, *value));
         }
     }
 

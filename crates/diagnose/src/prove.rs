@@ -192,7 +192,7 @@ fn spelt(id: &str, events: &[&Event]) -> String {
 }
 
 /// What an effect does along every run.
-fn reconstruct(
+pub fn reconstruct(
     case: &Case,
     system: &System,
     cured: &Cured,

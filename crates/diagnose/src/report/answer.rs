@@ -1,0 +1,227 @@
+//! Puts the answer together.
+
+use super::finding::{faulty, findings, verdict};
+use super::series::{corrections, effects, residuals};
+use super::shown::shown;
+use super::{Calibrated, Diagnosed, Diagnosis, Fit, FitRuns, Tried, Verdict, bands};
+use crate::events::Event;
+use crate::faults::Fault;
+use crate::map::map;
+use crate::prove::{Errors, Proof, prove};
+use crate::refine::{Free, HALF_95, Refined};
+use crate::search::Found;
+use crate::{Case, DiagnoseError, System, words};
+use headland_units::unit_of_name;
+
+/// What else is known when the answer is put together.
+pub struct Beside<'a> {
+    /// Faults that channels show by themselves.
+    pub faults: &'a [Fault],
+    /// Spells in single runs, claimed or not.
+    pub events: &'a [Event],
+    /// Why nothing is claimed, where it is not.
+    pub withheld: Option<String>,
+}
+
+/// Puts the answer together.
+pub fn report(
+    case: &Case,
+    system: &System,
+    found: &Found,
+    refined: &Refined,
+    proof: &Proof,
+    beside: &Beside,
+) -> Result<Diagnosed, DiagnoseError> {
+    let mut findings = findings(case, system, found, refined, proof);
+    let mut notes = case.study.notes.clone();
+    if beside.withheld.is_some() {
+        notes.extend(beside.faults.iter().map(words::fault));
+    } else {
+        findings.extend(beside.faults.iter().map(|fault| faulty(fault, system)));
+    }
+    let verdict = if beside.withheld.is_some() { Verdict::CannotTell } else { verdict(&findings) };
+    let fit = fit(case, Some(found), proof);
+    notes.extend(remarks(case, &found.unproven));
+    let mut null_space = refined.null_space.clone();
+    for finding in &findings {
+        for rival in &finding.indistinguishable_from {
+            null_space.push(format!(
+                "{} and {} explain these recordings equally well (squared correlation {:.2}).",
+                words::capital(&words::plain(&finding.id)),
+                words::plain(&rival.id),
+                rival.squared_correlation
+            ));
+        }
+    }
+    // Both under the noise at the end: before, whatever is missing would count as noise.
+    let before = map(case, system, &found.noises.1, &found.before, beside.events);
+    let after = map(case, system, &found.noises.1, &found.left, &[]);
+    let bands = refined
+        .causes
+        .iter()
+        .zip(&proof.effects)
+        .map(|(cured, effect)| bands::band(case, system, cured, refined, effect))
+        .collect::<Result<Vec<_>, _>>()?;
+    let told = words::Told {
+        verdict,
+        findings: &findings,
+        fit: &fit,
+        balances: &system.kinds,
+        before: &before,
+        withheld: beside.withheld.as_deref(),
+        null_space: &refined.null_space,
+    };
+    let diagnosis = Diagnosis {
+        schema: "headland.diagnosis/1",
+        verdict,
+        answer: words::answer(&told),
+        first_balance: before.first,
+        mismatch: before.stretches,
+        mismatch_left: after.stretches,
+        findings,
+        fit,
+        calibrated: calibrated(refined),
+        null_space,
+        unproven: found.unproven.iter().map(|cause| case.causes[*cause].id.to_owned()).collect(),
+        notes,
+        tried: tried(case, found),
+    };
+    Ok(Diagnosed {
+        diagnosis,
+        scenarios: proof.scenarios.iter().map(|(_, text)| text.clone()).collect(),
+        effects: effects(case, proof, &bands)?,
+        corrections: corrections(refined),
+        residuals: residuals(case, system, found),
+        shown: shown(case, system, Some(found), refined, proof)?,
+    })
+}
+
+/// The answer where the recording itself keeps anything from being concluded: the statements, and the scenario as it was.
+pub fn inconclusive(
+    case: &Case,
+    sound: &[Vec<bool>],
+    statements: &[String],
+) -> Result<Diagnosed, DiagnoseError> {
+    let system = &case.system(sound);
+    let parameters = &case.study.parameters;
+    let free = parameters.iter().map(|one| {
+        let sd = one.sd.unwrap_or(f64::INFINITY);
+        let ci95 = [one.value - HALF_95 * sd, one.value + HALF_95 * sd];
+        Free { name: one.name.clone(), prior: one.value, value: one.value, ci95 }
+    });
+    let refined = Refined { causes: Vec::new(), free: free.collect(), null_space: Vec::new() };
+    // A recording that cannot even drive the model is shown as it is.
+    let proof = prove(case, system, &refined).unwrap_or_else(|_| Proof {
+        signal: "speed_m_s",
+        fitted: Errors { before: f64::NAN, after: f64::NAN },
+        held_out: None,
+        noise: f64::NAN,
+        effects: Vec::new(),
+        scenarios: vec![(0, case.study.scenario().document().text().to_owned())],
+    });
+    let mut notes = case.study.notes.clone();
+    notes.extend(remarks(case, &[]));
+    let diagnosis = Diagnosis {
+        schema: "headland.diagnosis/1",
+        verdict: Verdict::CannotTell,
+        answer: words::inconclusive(statements),
+        first_balance: None,
+        mismatch: Vec::new(),
+        mismatch_left: Vec::new(),
+        findings: Vec::new(),
+        fit: fit(case, None, &proof),
+        calibrated: Vec::new(),
+        null_space: statements.to_vec(),
+        unproven: Vec::new(),
+        notes,
+        tried: Vec::new(),
+    };
+    Ok(Diagnosed {
+        diagnosis,
+        scenarios: proof.scenarios.iter().map(|(_, text)| text.clone()).collect(),
+        effects: effects(case, &proof, &[])?,
+        corrections: Vec::new(),
+        residuals: Vec::new(),
+        shown: shown(case, system, None, &refined, &proof).unwrap_or_default(),
+    })
+}
+
+fn ids(case: &Case, wanted: bool) -> Vec<String> {
+    let chosen = case.runs.iter().zip(&case.fit).filter(|(_, fit)| **fit == wanted);
+    chosen.map(|(drive, _)| drive.measured.id.clone()).collect()
+}
+
+fn fit(case: &Case, found: Option<&Found>, proof: &Proof) -> Fit {
+    let runs = |wanted: bool, errors: &Errors| FitRuns {
+        runs: ids(case, wanted),
+        rmse_before: errors.before,
+        rmse_after: errors.after,
+        noise: proof.noise,
+    };
+    let lack = match (&proof.held_out, proof.noise) {
+        (Some(held), noise) if noise > 0.0 => held.after / noise,
+        (None, noise) if noise > 0.0 => proof.fitted.after / noise,
+        // Without a noise of its own the signal is judged by the rows: all of their scatter over the sensors' part.
+        _ => found
+            .iter()
+            .flat_map(|found| &found.noises.1.0)
+            .map(|noise| (1.0 + noise.lack()).sqrt())
+            .fold(0.0, f64::max),
+    };
+    Fit {
+        signal: proof.signal.to_owned(),
+        fitted: runs(true, &proof.fitted),
+        held_out: proof.held_out.as_ref().map(|errors| runs(false, errors)),
+        lack_of_fit: lack,
+    }
+}
+
+fn calibrated(refined: &Refined) -> Vec<Calibrated> {
+    let unit = |name: &str| unit_of_name(name).map_or_else(|| "1".to_owned(), |unit| unit.symbol);
+    let one = |free: &Free| Calibrated {
+        name: free.name.clone(),
+        prior: free.prior,
+        value: free.value,
+        ci95: free.ci95,
+        unit: unit(&free.name),
+    };
+    refined.free.iter().map(one).collect()
+}
+
+fn remarks(case: &Case, unproven: &[usize]) -> Vec<String> {
+    let mut notes = Vec::new();
+    if !unproven.is_empty() {
+        let names: Vec<String> = unproven.iter().map(|cause| words::plain(case.causes[*cause].id)).collect();
+        notes.push(format!(
+            "{} would explain each run by itself, but not one from the others; so nothing of it is claimed.",
+            words::capital(&names.join(" and "))
+        ));
+    }
+    let held = ids(case, false);
+    if case.chosen && held.is_empty() {
+        notes.push(
+            "There are too few runs to hold one out, so nothing is proven on runs that were not fitted."
+                .to_owned(),
+        );
+    } else if case.chosen {
+        let were = if held.len() == 1 { "was" } else { "were" };
+        notes.push(format!("No run was marked `use: held_out`; held out {were} {}.", held.join(", ")));
+    }
+    notes
+}
+
+fn tried(case: &Case, found: &Found) -> Vec<Tried> {
+    let mut all = Vec::new();
+    for (number, round) in found.tried.iter().enumerate() {
+        for (cause, shape, gain) in &round.causes {
+            all.push(Tried {
+                round: number + 1,
+                id: case.causes[*cause].id.to_owned(),
+                shape: shape.clone(),
+                gain: *gain,
+                needed: round.by_chance,
+            });
+        }
+    }
+    all
+}

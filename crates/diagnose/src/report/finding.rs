@@ -1,0 +1,290 @@
+//! The findings: what each cause amounts to, where it works, and how sure it is.
+
+use super::{FindingKind, FindingReport, Interval, ParameterReport, RivalReport, Verdict};
+use crate::balance::{Kind, System};
+use crate::catalogue::{Cause, Class, Form};
+use crate::events::Event;
+use crate::faults::Fault;
+use crate::locate::stretches;
+use crate::prove::Proof;
+use crate::refine::{Cured, HALF_95, Refined};
+use crate::search::Found;
+use crate::{Case, words};
+
+/// The findings, by their share of the mismatch.
+pub fn findings(
+    case: &Case,
+    system: &System,
+    found: &Found,
+    refined: &Refined,
+    proof: &Proof,
+) -> Vec<FindingReport> {
+    let mut findings: Vec<FindingReport> = Vec::new();
+    for (place, (cured, effect)) in refined.causes.iter().zip(&proof.effects).enumerate() {
+        let balance = system.kinds[cured.accepted.balance];
+        let share = share(case, system, found, (refined, proof), place);
+        let parameters = parameters(cured);
+        let rivals: Vec<RivalReport> = cured
+            .accepted
+            .rivals
+            .iter()
+            .map(|rival| RivalReport {
+                id: case.causes[rival.cause].id.to_owned(),
+                squared_correlation: rival.squared_correlation,
+                evidence: rival.gain,
+            })
+            .collect();
+        findings.push(FindingReport {
+            kind: match cured.cause.class {
+                Class::Physics => FindingKind::Physics,
+                Class::Artefact => FindingKind::Artefact,
+                Class::Unlisted => FindingKind::Unlisted,
+            },
+            id: cured.cause.id.to_owned(),
+            balance,
+            sentence: words::sentence(cured, balance, &parameters, share, &case.causes),
+            equation: cured.cause.equation_text(),
+            depends_on: cured.cause.channels(),
+            stretches: if cured.events.is_empty() {
+                stretches(&case.runs, &effect.runs)
+            } else {
+                spells(case, &cured.events)
+            },
+            parameters,
+            share_of_mismatch: share,
+            evidence: [cured.accepted.gain, cured.accepted.by_chance],
+            next_experiment: experiment(&cured.cause, cured, case),
+            indistinguishable_from: rivals,
+        });
+    }
+    findings.sort_by(|one, other| other.share_of_mismatch.total_cmp(&one.share_of_mismatch));
+    findings
+}
+
+/// A fault that a channel shows by itself.
+pub fn faulty(fault: &Fault, system: &System) -> FindingReport {
+    FindingReport {
+        kind: FindingKind::Artefact,
+        id: fault.id.to_owned(),
+        balance: system.kinds.first().copied().unwrap_or(Kind::Motion),
+        sentence: words::fault(fault),
+        equation: String::new(),
+        depends_on: vec![fault.channel.clone()],
+        stretches: fault.stretches.clone(),
+        parameters: vec![ParameterReport {
+            name: "size".to_owned(),
+            value: fault.size,
+            ci95: [fault.size, fault.size],
+            unit: fault.unit.clone(),
+        }],
+        share_of_mismatch: 0.0,
+        evidence: [0.0, 0.0],
+        indistinguishable_from: Vec::new(),
+        next_experiment: format!("look at the sensor and the logger of `{}`", fault.channel),
+    }
+}
+
+/// Whether it is in doubt what a finding is: between faults of one sensor the doubt makes no difference.
+fn doubtful(finding: &FindingReport) -> bool {
+    let fault = |id: &str| ["accelerometer_bias", "accelerometer_tilt"].contains(&id);
+    finding.indistinguishable_from.iter().any(|rival| !(fault(&finding.id) && fault(&rival.id)))
+}
+
+/// What a diagnosis says in a word.
+pub fn verdict(findings: &[FindingReport]) -> Verdict {
+    let any = |kind: FindingKind| findings.iter().any(|finding| finding.kind == kind);
+    if findings.is_empty() {
+        Verdict::None
+    } else if findings.first().is_some_and(|finding| finding.kind == FindingKind::Unlisted) {
+        Verdict::Unlisted
+    } else if findings.first().is_some_and(doubtful) {
+        Verdict::CannotTell
+    } else if any(FindingKind::Physics) && any(FindingKind::Artefact) {
+        Verdict::Both
+    } else if any(FindingKind::Artefact) {
+        Verdict::SensorArtefact
+    } else if any(FindingKind::Physics) {
+        Verdict::MissingPhysics
+    } else {
+        Verdict::Unlisted
+    }
+}
+
+/// Share of the mismatch with the nominal model, in the balance in which a cause shows most, that it explains: its mean
+/// square over that of everything beyond the noise of the sensors. What the free parameters take is mismatch too.
+fn share(
+    case: &Case,
+    system: &System,
+    found: &Found,
+    (refined, proof): (&Refined, &Proof),
+    place: usize,
+) -> f64 {
+    let Some(cured) = refined.causes.get(place) else { return 0.0 };
+    let balance = cured.accepted.balance;
+    let size = |column: &crate::gram::Column| system.mean_squares(column, &case.fit)[balance];
+    let noise = found.noises.1.0[balance].sensor;
+    let before = (size(&system.residual) - noise).max(f64::MIN_POSITIVE);
+    let left = (size(&found.left) - noise).max(0.0);
+    let of = |place: usize| found.effects.get(place).map_or(0.0, size);
+    let all: f64 = (0..refined.causes.len()).map(of).sum();
+    let calibrated = (before - left - all).max(0.0);
+    // Rows in which a spell works were set aside, so it is judged by its samples.
+    let spell = |place: usize| {
+        let own = refined.causes.get(place).is_some_and(|one| !one.events.is_empty());
+        if own && refined.causes[place].accepted.balance == balance {
+            of_samples(case, proof, place)
+        } else {
+            0.0
+        }
+    };
+    let whole = all + left + calibrated + (0..refined.causes.len()).map(spell).sum::<f64>();
+    if !cured.events.is_empty() {
+        return spell(place) / whole.max(f64::MIN_POSITIVE);
+    }
+    if found.effects.get(place).is_none() {
+        // Corrected in the recording itself, before anything was left.
+        return if cured.accepted.gain > 0.0 { 1.0 - left / before.max(left) } else { 0.0 };
+    }
+    if all > 0.0 { of(place) / whole } else { 0.0 }
+}
+
+/// Mean square of an effect over the samples of the fitted runs.
+fn of_samples(case: &Case, proof: &Proof, place: usize) -> f64 {
+    let Some(effect) = proof.effects.get(place) else { return 0.0 };
+    let fitted = effect.runs.iter().zip(&case.fit).filter(|(_, fit)| **fit);
+    let squares: Vec<f64> = fitted
+        .flat_map(|(run, _)| run)
+        .map(|value| value * value)
+        .filter(|value| value.is_finite())
+        .collect();
+    squares.iter().sum::<f64>() / squares.len().max(1) as f64
+}
+
+/// Where spells work.
+fn spells(case: &Case, events: &[Event]) -> Vec<Interval> {
+    let one = |event: &Event| {
+        let run = &case.runs[event.run];
+        let at = |time_s: f64| {
+            let times = run.measured.trace.time_s();
+            let sample = times.partition_point(|time| *time < time_s).min(times.len().saturating_sub(1));
+            run.position_m.get(sample).copied().unwrap_or(f64::NAN)
+        };
+        Interval {
+            run: run.measured.id.clone(),
+            from_s: event.from_s,
+            to_s: event.to_s,
+            from_position_m: at(event.from_s),
+            to_position_m: at(event.to_s),
+        }
+    };
+    events.iter().map(one).collect()
+}
+
+fn parameters(cured: &Cured) -> Vec<ParameterReport> {
+    let one = |name: &str, value: f64, ci95: [f64; 2], unit: &str| ParameterReport {
+        name: name.to_owned(),
+        value,
+        ci95,
+        unit: unit.to_owned(),
+    };
+    if let Some(function) = cured.function() {
+        return function_parameters(&cured.cause, function);
+    }
+    if let (Some(law), Some((factor, _))) = (&cured.cause.law, cured.values.first()) {
+        // Amplitudes come out in newtons or watts; the factor that was estimated beside belongs to them.
+        let constant = |constant: &headland_symbolic::Constant| {
+            let factor = if ["N", "W"].contains(&constant.unit.as_str()) { *factor } else { 1.0 };
+            let value = factor * constant.value;
+            let half = HALF_95 * (factor * constant.sd.unwrap_or(0.0)).abs();
+            one(&constant.name, value, [value - half, value + half], &constant.unit)
+        };
+        return law.constants.iter().map(constant).collect();
+    }
+    match cured.cause.id {
+        "wind" => {
+            let [(north, north_ci), (east, east_ci), ..] = cured.values[..] else { return Vec::new() };
+            let sd = |ci: [f64; 2]| (ci[1] - ci[0]) / (2.0 * HALF_95);
+            let speed = north.hypot(east);
+            let from = east.atan2(north).rem_euclid(std::f64::consts::TAU);
+            let along = (north * sd(north_ci)).hypot(east * sd(east_ci)) / speed.max(1e-9);
+            let across = (east * sd(north_ci)).hypot(north * sd(east_ci)) / speed.max(1e-9).powi(2);
+            vec![
+                one("speed_m_s", speed, [(speed - HALF_95 * along).max(0.0), speed + HALF_95 * along], "m/s"),
+                one("from_rad", from, [from - HALF_95 * across, from + HALF_95 * across], "rad"),
+            ]
+        }
+        "cornering_drag" => {
+            let Some((value, ci)) = cured.values.first() else { return Vec::new() };
+            let stiffness = |compliance: f64| 1.0 / compliance.max(1e-12);
+            vec![one(
+                "cornering_stiffness_n_per_rad",
+                stiffness(*value),
+                [stiffness(ci[1]), stiffness(ci[0].max(1e-9))],
+                "N/rad",
+            )]
+        }
+        _ => cured
+            .cause
+            .terms
+            .iter()
+            .zip(&cured.values)
+            // A term that was not needed is zero, and nothing was estimated.
+            .filter(|(_, (value, ci))| !(*value == 0.0 && *ci == [0.0; 2]))
+            .map(|(term, (value, ci))| one(term.name, *value, *ci, term.unit))
+            .collect(),
+    }
+}
+
+fn function_parameters(cause: &Cause, function: &crate::profile::Function) -> Vec<ParameterReport> {
+    let term = &cause.terms[0];
+    // The largest value over all groups, with its own band.
+    let mut peak = (0.0, 0.0);
+    let (mut sum, mut count) = (0.0, 0usize);
+    for (values, sds) in &function.values {
+        for (value, sd) in values.iter().zip(sds.iter()) {
+            if value.abs() > f64::abs(peak.0) {
+                peak = (*value, *sd);
+            }
+            sum += value * value;
+            count += 1;
+        }
+    }
+    let rms = (sum / count.max(1) as f64).sqrt();
+    let unit = if cause.form == Form::OverPosition { "m" } else { "s" };
+    let length = function.spread.length;
+    vec![
+        ParameterReport {
+            name: term.name.to_owned(),
+            value: peak.0,
+            ci95: [peak.0 - HALF_95 * peak.1, peak.0 + HALF_95 * peak.1],
+            unit: term.unit.to_owned(),
+        },
+        ParameterReport {
+            name: format!("{}_rms", term.name),
+            value: rms,
+            ci95: [rms - HALF_95 * peak.1, rms + HALF_95 * peak.1],
+            unit: term.unit.to_owned(),
+        },
+        ParameterReport {
+            name: format!("length_{unit}"),
+            value: length,
+            ci95: [0.5 * length, 2.0 * length],
+            unit: unit.to_owned(),
+        },
+    ]
+}
+
+fn experiment(cause: &Cause, cured: &Cured, case: &Case) -> String {
+    if cured.accepted.rivals.is_empty() {
+        return cause.experiment.to_owned();
+    }
+    let mut runs = vec![cause.experiment];
+    for rival in &cured.accepted.rivals {
+        let own = case.causes[rival.cause].experiment;
+        if !runs.contains(&own) {
+            runs.push(own);
+        }
+    }
+    runs.truncate(3);
+    runs.join("; or ")
+}

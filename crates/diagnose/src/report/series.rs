@@ -1,0 +1,78 @@
+//! What is written beside the answer: effects along the runs, corrections of channels, what the balances leave over.
+
+use super::LeftOver;
+use super::bands::Banded;
+use crate::prove::Proof;
+use crate::refine::Refined;
+use crate::search::Found;
+use crate::{Case, DiagnoseError, System};
+use headland_trace::{Origin, Run, Trace};
+
+/// Every effect along every run, with its 95 % band where one is known.
+pub fn effects(case: &Case, proof: &Proof, bands: &[Option<Banded>]) -> Result<Vec<Run>, DiagnoseError> {
+    let mut runs = Vec::new();
+    for (index, drive) in case.runs.iter().enumerate() {
+        let mut trace = Trace::new(drive.measured.trace.time_s().to_vec())?;
+        for (effect, band) in proof.effects.iter().zip(bands) {
+            let name = format!("{}_{}", effect.id, effect.unit);
+            if trace.get(&name).is_some() {
+                continue;
+            }
+            trace.push(name.clone(), effect.runs[index].clone(), Origin::Predicted)?;
+            if let Some(band) = band {
+                let side = |sign: f64| -> Vec<f64> {
+                    let both = effect.runs[index].iter().zip(&band.half[index]);
+                    both.map(|(value, half)| value + sign * half).collect()
+                };
+                trace.push(format!("{name}_low"), side(-1.0), Origin::Predicted)?;
+                trace.push(format!("{name}_high"), side(1.0), Origin::Predicted)?;
+            }
+        }
+        runs.push(Run { id: drive.measured.id.clone(), trace });
+    }
+    Ok(runs)
+}
+
+/// Channel, latency [s], scale, bias.
+pub fn corrections(refined: &Refined) -> Vec<(String, f64, f64, f64)> {
+    let correction = |(id, value): (&str, f64)| match id {
+        "latency" => Some(("speed_m_s".to_owned(), value, 1.0, 0.0)),
+        "speed_scale" => Some(("speed_m_s".to_owned(), 0.0, 1.0 + value, 0.0)),
+        "force_scale" => Some(("tractive_force_n".to_owned(), 0.0, 1.0 + value, 0.0)),
+        "accelerometer_bias" => Some(("specific_force_m_s2".to_owned(), 0.0, 1.0, value)),
+        _ => None,
+    };
+    refined.artefacts().filter_map(correction).collect()
+}
+
+/// What every balance leaves over in every run.
+pub fn residuals(case: &Case, system: &System, found: &Found) -> Vec<LeftOver> {
+    let mut all = Vec::new();
+    for (number, kind) in system.kinds.iter().enumerate() {
+        for (run, recorded) in case.runs.iter().enumerate() {
+            let mut one = LeftOver {
+                balance: *kind,
+                run: recorded.measured.id.clone(),
+                held_out: !case.fit[run],
+                path: recorded.path,
+                reversed: recorded.measured.how.reversed_from_m.is_some(),
+                time_s: Vec::new(),
+                position_m: Vec::new(),
+                speed_m_s: Vec::new(),
+                before: Vec::new(),
+                after: Vec::new(),
+            };
+            for (index, chunk) in system.chunks.iter().enumerate() {
+                if chunk.run == run && chunk.balance == number {
+                    one.time_s.extend(chunk.rows.iter().map(|row| row.time_s));
+                    one.position_m.extend(chunk.rows.iter().map(|row| row.mean(&recorded.position_m)));
+                    one.speed_m_s.extend(chunk.rows.iter().map(|row| row.mean(&recorded.motion.value)));
+                    one.before.extend(found.before[index].iter());
+                    one.after.extend(found.left[index].iter());
+                }
+            }
+            all.push(one);
+        }
+    }
+    all
+}

@@ -1,0 +1,167 @@
+//! The paragraph.
+
+use super::number::{plain, quantity};
+use super::{capital, listed, place};
+use crate::balance::Kind;
+use crate::map::Map;
+use crate::report::{FindingReport, Fit, FitRuns, Verdict};
+use headland_units::{stem, unit_of_name};
+
+/// What the paragraph tells.
+pub struct Told<'a> {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The findings.
+    pub findings: &'a [FindingReport],
+    /// Before and after.
+    pub fit: &'a Fit,
+    /// The balances.
+    pub balances: &'a [Kind],
+    /// Where they do not close with the free parameters alone.
+    pub before: &'a Map,
+    /// Why nothing is claimed, where it is not.
+    pub withheld: Option<&'a str>,
+    /// What the data cannot separate.
+    pub null_space: &'a [String],
+}
+
+/// The paragraph: what was looked at, what fails first, what was left out, what it explains, what cannot be told.
+pub fn answer(told: &Told) -> String {
+    let mut sentences = vec![looked_at(told)];
+    sentences.extend(place::first(told.before));
+    match told.verdict {
+        Verdict::None if told.before.first.is_some() => sentences.push(
+            "No cause of the library explains this better than chance would, so nothing is claimed; the free parameters, \
+             within their priors, take what they can."
+                .to_owned(),
+        ),
+        Verdict::None => sentences.push(
+            "Nothing is missing: what differs is explained by the free parameters within their priors and by noise."
+                .to_owned(),
+        ),
+        Verdict::CannotTell if told.withheld.is_none() => sentences.push(
+            "Something is missing, and these recordings cannot tell which of several causes it is.".to_owned(),
+        ),
+        _ => {}
+    }
+    sentences.extend(told.withheld.map(str::to_owned));
+    sentences.extend(told.findings.iter().map(|finding| finding.sentence.clone()));
+    sentences.extend(calibrated(told));
+    sentences.push(proof(told));
+    sentences.extend(left_over(told));
+    if told.verdict == Verdict::CannotTell
+        && let Some(first) = told.findings.first()
+    {
+        sentences.push(format!("To tell, {}.", first.next_experiment));
+    }
+    spoken(&sentences.join(" "))
+}
+
+/// Names of parameters, set off by backticks, as words.
+fn spoken(text: &str) -> String {
+    let parts = text.split('`').enumerate();
+    parts.map(|(index, part)| if index % 2 == 1 { plain(stem(part)) } else { part.to_owned() }).collect()
+}
+
+/// The paragraph where the recording itself keeps anything from being concluded.
+pub fn inconclusive(statements: &[String]) -> String {
+    format!("Nothing can be concluded from this recording. {} No cause is claimed.", statements.join(" "))
+}
+
+/// `1 run` and `2 runs`.
+fn runs(count: usize) -> String {
+    if count == 1 { "1 run".to_owned() } else { format!("{count} runs") }
+}
+
+/// An error that grows by more than this has grown.
+const WORSE: f64 = 1.02;
+
+fn looked_at(told: &Told) -> String {
+    let names: Vec<String> = told.balances.iter().map(|balance| balance.name().to_owned()).collect();
+    let (balance, were) = if names.len() == 1 { ("balance", "was") } else { ("balances", "were") };
+    let fitted = told.fit.fitted.runs.len();
+    let verb = if fitted == 1 { "was" } else { "were" };
+    let held = match &told.fit.held_out {
+        Some(held) => format!("{} held out", held.runs.len()),
+        None => "none held out".to_owned(),
+    };
+    format!(
+        "{} {verb} fitted and {held}; the {} {balance} {were} looked at.",
+        capital(&runs(fitted)),
+        listed(&names)
+    )
+}
+
+/// That calibration explains the greater part, where it does: shares of a quarter would look like failures.
+fn calibrated(told: &Told) -> Option<String> {
+    /// Causes that explain less than this leave the rest to the free parameters.
+    const GREATER: f64 = 0.5;
+    /// Error at the end over that at the begin below which nearly everything is explained.
+    const EXPLAINED: f64 = 0.3;
+    let shares: f64 = told.findings.iter().map(|finding| finding.share_of_mismatch).sum();
+    let fitted = &told.fit.fitted;
+    let explained = fitted.rmse_after < EXPLAINED * fitted.rmse_before;
+    let any = told.findings.iter().any(|finding| finding.share_of_mismatch > 0.0);
+    (any && shares < GREATER && explained)
+        .then(|| "The greater part is what the free parameters take within their priors.".to_owned())
+}
+
+fn proof(told: &Told) -> String {
+    let fit = told.fit;
+    let signal = stem(&fit.signal).replace('_', " ");
+    let unit = unit_of_name(&fit.signal).map_or_else(String::new, |unit| unit.symbol);
+    let one = |place: String, runs: &FitRuns| {
+        let (before, after) = (runs.rmse_before, runs.rmse_after);
+        let quantity = |value: f64| quantity(value, &unit);
+        if !(before.is_finite() && after.is_finite()) {
+            return format!("{place} the error of {signal} could not be computed");
+        }
+        if after < 0.98 * before {
+            format!("{place} the error of {signal} falls from {} to {}", quantity(before), quantity(after))
+        } else if after > WORSE * before {
+            format!("{place} the error of {signal} rises from {} to {}", quantity(before), quantity(after))
+        } else {
+            format!("{place} the error of {signal} stays at {}", quantity(after))
+        }
+    };
+    let noise = fit.fitted.noise;
+    let sensor = if noise.is_finite() {
+        format!(" (noise of the sensor: {})", quantity(noise, &unit))
+    } else {
+        String::new()
+    };
+    let text = match &fit.held_out {
+        Some(held) if held.runs.len() == 1 => one("On the run that it never saw".to_owned(), held),
+        Some(held) => one(format!("On the {} that it never saw", runs(held.runs.len())), held),
+        None => one("On the fitted runs".to_owned(), &fit.fitted),
+    };
+    let worse = |runs: &FitRuns| runs.rmse_after > WORSE * runs.rmse_before;
+    let doubt = if !told.findings.is_empty() && fit.held_out.as_ref().is_some_and(worse) {
+        ": it does not help there, so it is no proof"
+    } else {
+        ""
+    };
+    format!("{text}{sensor}{doubt}.")
+}
+
+/// What is not explained.
+fn left_over(told: &Told) -> Option<String> {
+    /// Error at the end over the noise from which on something is left to explain.
+    const MUCH: f64 = 2.0;
+    let lack = told.fit.lack_of_fit;
+    let much = (lack.is_finite() && lack > MUCH).then(|| {
+        if told.verdict == Verdict::None {
+            format!("What is left is {lack:.1} times the noise of the sensor, without a pattern that stands out.")
+        } else {
+            format!(
+                "What is left is {lack:.1} times the noise of the sensor: there is more to it than was found, or the \
+                 noise is larger."
+            )
+        }
+    });
+    let cannot = told.null_space.first().map(|sentence| format!("Beyond that: {sentence}"));
+    match (much, cannot) {
+        (None, None) => None,
+        (one, other) => Some([one, other].into_iter().flatten().collect::<Vec<_>>().join(" ")),
+    }
+}

@@ -1,0 +1,177 @@
+//! What was found, as an engineer would write it.
+
+mod answer;
+mod number;
+mod place;
+
+pub use answer::{Told, answer, inconclusive};
+pub use number::plain;
+
+use crate::balance::Kind;
+use crate::catalogue::{Cause, Class};
+use crate::refine::Cured;
+use crate::report::ParameterReport;
+use number::{quantity, with_interval};
+
+/// With a capital at its begin.
+pub fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}
+
+/// `a`, `a and b`, `a, b and c`.
+pub fn listed(all: &[String]) -> String {
+    match all {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+/// Whether words speak of several things: of 'slopes along the path', and not of 'a loss in the driveline'.
+fn several(words: &str) -> bool {
+    let single = ["a ", "an ", "the "].iter().any(|article| words.starts_with(article));
+    let head = [" that", " along", " of", " in", " while", " away"]
+        .iter()
+        .filter_map(|end| words.find(end))
+        .min()
+        .map_or(words, |end| &words[..end]);
+    !single && head.ends_with('s')
+}
+
+/// One sentence for a finding.
+pub fn sentence(
+    cured: &Cured,
+    kind: Kind,
+    parameters: &[ParameterReport],
+    share: f64,
+    causes: &[Cause],
+) -> String {
+    let cause = &cured.cause;
+    let many = several(cause.words) && cause.class == Class::Physics;
+    let (was, it, them) = if many { ("were", "they explain", "them") } else { ("was", "it explains", "it") };
+    let what = match (cause.class, values(cured, parameters)) {
+        (Class::Physics, Values::None) => format!("{} {was} left out", capital(cause.words)),
+        (Class::Physics, Values::Of(values)) => format!("{} {values} {was} left out", capital(cause.words)),
+        (Class::Physics, Values::Beside(values)) => {
+            format!("{} {was} left out ({values})", capital(cause.words))
+        }
+        (Class::Unlisted, Values::None) => {
+            format!("{} {was} left out: {}", capital(cause.words), cause.equation_text())
+        }
+        (Class::Unlisted, Values::Of(values) | Values::Beside(values)) => {
+            format!("{} {was} left out: {} ({values})", capital(cause.words), cause.equation_text())
+        }
+        (Class::Artefact, Values::None) => format!("A sensor is at fault: {}", cause.words),
+        (Class::Artefact, Values::Of(values) | Values::Beside(values)) => {
+            format!("A sensor is at fault: {} ({values})", cause.words)
+        }
+    };
+    let rivals: Vec<String> =
+        cured.accepted.rivals.iter().map(|rival| causes[rival.cause].words.to_owned()).collect();
+    let others = if rivals.is_empty() {
+        String::new()
+    } else {
+        format!("; these recordings cannot tell {them} from {}", number::either(&rivals))
+    };
+    format!("{what}; {it} {:.0} % of the mismatch in the {} balance{others}.", 100.0 * share, kind.name())
+}
+
+/// The values of a finding in a sentence.
+enum Values {
+    /// None that a person would want.
+    None,
+    /// Right behind its name: 'a wind of 5 m/s'.
+    Of(String),
+    /// In parentheses.
+    Beside(String),
+}
+
+fn values(cured: &Cured, parameters: &[ParameterReport]) -> Values {
+    let find = |name: &str| parameters.iter().find(|one| one.name == name);
+    if let ("wind", Some(speed), Some(from)) = (cured.cause.id, find("speed_m_s"), find("from_rad")) {
+        let degrees = |rad: f64| rad.to_degrees();
+        return Values::Of(format!(
+            "of {} from {}°",
+            with_interval(speed.value, speed.ci95, "m/s"),
+            with_interval(degrees(from.value), from.ci95.map(degrees), "")
+        ));
+    }
+    if cured.function().is_some() {
+        let [peak, rms, ..] = parameters else { return Values::None };
+        return Values::Beside(format!(
+            "{} up to {}, {} in the root mean square",
+            label(&peak.name),
+            with_interval(peak.value, peak.ci95, &peak.unit),
+            quantity(rms.value, &rms.unit)
+        ));
+    }
+    if !cured.events.is_empty() {
+        let count = cured.events.len();
+        let spells = if count == 1 { "one spell".to_owned() } else { format!("{count} spells") };
+        let lasts_s: f64 = cured.events.iter().map(|event| event.to_s - event.from_s).sum();
+        let mean = parameters.first().map_or(0.0, |one| one.value);
+        return Values::Beside(format!(
+            "{spells}, {} in all, {} on average",
+            quantity(lasts_s, "s"),
+            quantity(mean, "N")
+        ));
+    }
+    let known: Vec<String> = parameters
+        .iter()
+        .filter(|one| one.ci95[0] < one.ci95[1])
+        .map(|one| format!("{} {}", label(&one.name), with_interval(one.value, one.ci95, &one.unit)))
+        .collect();
+    if known.is_empty() { Values::None } else { Values::Beside(known.join(", ")) }
+}
+
+/// A parameter's name as a person says it.
+fn label(name: &str) -> String {
+    headland_units::stem(name).replace('_', " ")
+}
+
+/// One sentence for a fault that a channel shows by itself.
+pub fn fault(fault: &crate::faults::Fault) -> String {
+    let channel = capital(&label(&fault.channel));
+    match fault.id {
+        "stuck_channel" => format!(
+            "{channel} sticks for {} in all while the vehicle moves; those samples were left out.",
+            quantity(fault.size, "s")
+        ),
+        "quantisation" => {
+            format!(
+                "{channel} comes in steps of {}, coarser than its noise.",
+                quantity(fault.size, &fault.unit)
+            )
+        }
+        _ => format!("{:.1} % of the recorded time holds no samples.", 100.0 * fault.size),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_thing_was_and_several_were() {
+        for (words, expected) in [
+            ("slopes along the path", true),
+            ("service brakes that were not recorded", true),
+            ("tyres that warm up", true),
+            ("losses while ranges are shifted", true),
+            ("a loss in the driveline in proportion to its load", false),
+            ("drag of the tyres in curves", false),
+            ("rolling resistance that depends otherwise on speed", false),
+            ("softer ground along the path", false),
+        ] {
+            assert_eq!(several(words), expected, "{words}");
+        }
+    }
+
+    #[test]
+    fn a_list_ends_with_and() {
+        let all = |names: &[&str]| listed(&names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>());
+        assert_eq!(all(&["slip"]), "slip");
+        assert_eq!(all(&["parity", "slip", "motion"]), "parity, slip and motion");
+    }
+}

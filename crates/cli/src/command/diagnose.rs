@@ -75,7 +75,9 @@ fn told(found: &Diagnosed, output: &Output) -> String {
     let diagnosis = &found.diagnosis;
     let mut text = format!("{}\n", diagnosis.answer);
     for finding in &diagnosis.findings {
-        let _ = writeln!(text, "\n  {}  ({})\n    {}", finding.id, finding.equation, finding.sentence);
+        let equation =
+            if finding.equation.is_empty() { String::new() } else { format!("  {}", finding.equation) };
+        let _ = writeln!(text, "\n  {}{equation}", finding.id);
         for stretch in finding.stretches.iter().take(4) {
             let _ = writeln!(
                 text,

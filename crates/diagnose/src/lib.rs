@@ -124,7 +124,7 @@ impl Look {
 /// Takes the faults of sensors that were found out of the recordings, and looks again, until nothing is left of them.
 fn sensors_first(case: &mut Case, look: &mut Look, sound: &[Vec<bool>]) -> Result<(), DiagnoseError> {
     /// A fault that is not linear takes some rounds.
-    const ROUNDS: usize = 4;
+    const ROUNDS: usize = 6;
     /// A rest that is this share of the fault, or this share of its usual size, is none.
     const NEARLY: f64 = 0.05;
     for _ in 0..ROUNDS {

@@ -15,7 +15,7 @@ const FACTOR: f64 = 1.4;
 /// Moves at one factor.
 const MOST_MOVES: usize = 5;
 /// The factor's root is taken so many times.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 8;
 
 /// Adds a trial at the best shape, of the best causes that have one. Whether there was anything to add.
 pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> Result<bool, DiagnoseError> {
@@ -41,10 +41,16 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
     }
     let mut added = false;
     for (cause, shape) in chosen {
-        let best = best(case, system, pool, found, cause, &shape)?;
-        if best != shape {
-            add_trial(case, system, pool, cause, &best)?;
-            added = true;
+        // By itself, and beside what it was accepted with: a wrong companion must not hold it where it is.
+        for beside in [false, true] {
+            if beside && !found.accepted.iter().any(|one| one.trial.cause == cause) {
+                continue;
+            }
+            let best = best(case, system, pool, found, beside, (cause, &shape))?;
+            if best != shape {
+                add_trial(case, system, pool, cause, &best)?;
+                added = true;
+            }
         }
     }
     Ok(added)
@@ -56,11 +62,11 @@ fn best(
     system: &System,
     pool: &mut Pool,
     found: &Found,
-    cause: usize,
-    start: &[f64],
+    beside: bool,
+    (cause, start): (usize, &[f64]),
 ) -> Result<Vec<f64>, DiagnoseError> {
     let (columns, trials) = (pool.columns.len(), pool.trials.len());
-    let accepted = found.accepted.iter().find(|one| one.trial.cause == cause);
+    let accepted = found.accepted.iter().find(|one| beside && one.trial.cause == cause);
     let wanted = accepted.map(|one| one.trial.terms.clone());
     // Beside the other accepted causes, but for functions.
     let others: Vec<Part> = found

@@ -79,6 +79,7 @@ fn beside(
         for stand in [state.with_listed(&stand), Some(stand)].into_iter().flatten() {
             if !state.impossible(&stand.parts, &stand.estimate)
                 && state.works_widely(&stand)
+                && !state.is_listed(&stand)
                 && best.as_ref().is_none_or(|best| worth(&stand) > worth(best))
             {
                 best = Some(stand);
@@ -119,10 +120,31 @@ impl State<'_> {
         })
     }
 
-    /// A set with the listed cause beside that makes it likeliest.
+    /// Whether a law of a set says the same as a listed cause in other words.
+    fn is_listed(&self, stand: &Stand) -> bool {
+        /// Two causes of this squared correlation are one to the data.
+        const SAME: f64 = 0.97;
+        let Some(reduced) = self.reduced(&stand.noises, None) else { return true };
+        let nuisance: Vec<usize> = (0..self.pool.nuisance).collect();
+        let sd = self.sd();
+        let laws = stand.parts.iter().filter(|part| self.cause(&part.trial).law.is_some());
+        laws.into_iter().any(|law| {
+            let listed = self.pool.trials.iter().filter(|trial| {
+                let cause = self.cause(trial);
+                cause.law.is_none() && !cause.is_function()
+            });
+            listed.into_iter().any(|trial| {
+                reduced.squared_correlation(&law.trial.columns, &trial.columns, &nuisance, &sd) > SAME
+            })
+        })
+    }
+
+    /// A set with the listed cause beside that makes it likeliest; faults of sensors were looked for before.
     fn with_listed(&self, stand: &Stand) -> Option<Stand> {
         let reduced = self.reduced(&stand.noises, stand.function_part())?;
-        self.contest(stand, &reduced, &[]).into_iter().next().map(|one| one.stand)
+        let faults = self.case.causes.iter().filter(|cause| cause.form == Form::Measured);
+        let faults: Vec<&str> = faults.map(|cause| cause.id).collect();
+        self.contest(stand, &reduced, &faults).into_iter().next().map(|one| one.stand)
     }
 }
 

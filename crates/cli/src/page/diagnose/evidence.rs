@@ -50,7 +50,7 @@ pub fn section(found: &Diagnosed) -> Option<Section> {
 
 /// Growths of ln p are told to a tenth: less than one decides nothing.
 fn tenths(value: f64) -> String {
-    super::super::short((10.0 * value).round() / 10.0)
+    format!("{value:.1}")
 }
 
 fn became(one: &Tried, round: &[&Tried], found: &Diagnosed) -> String {

@@ -392,22 +392,8 @@ fn correlation(covariance: &DMatrix<f64>) -> Vec<Vec<f64>> {
 fn null_space(parameters: &[Parameter], clusters: &[Cluster], size: &[f64]) -> Vec<String> {
     let count = parameters.len();
     let information = clusters.iter().fold(DMatrix::zeros(count, count), |sum, one| sum + &one.information);
-    let sentence = |blind: crate::separable::Blind| {
-        let name = &parameters[blind.candidate].name;
-        let others: Vec<&str> =
-            blind.imitated_by.iter().map(|(index, _)| parameters[*index].name.as_str()).collect();
-        match (others.is_empty(), blind.exact) {
-            (true, true) => format!("The recording does not react to `{name}` at all; its prior stands."),
-            (true, false) => {
-                format!("The recording is too short or too noisy to tell `{name}` better than its prior.")
-            }
-            (false, _) => format!(
-                "`{name}` cannot be told apart from `{}`: only a combination of them is known.",
-                others.join("`, `")
-            ),
-        }
-    };
-    blind_directions(&information, size).into_iter().map(sentence).collect()
+    let names: Vec<&str> = parameters.iter().map(|one| one.name.as_str()).collect();
+    blind_directions(&information, size).iter().map(|blind| blind.told(&names)).collect()
 }
 
 #[cfg(test)]

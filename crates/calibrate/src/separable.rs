@@ -23,6 +23,24 @@ pub struct Blind {
     pub deviation: f64,
 }
 
+impl Blind {
+    /// What it means for the candidate, in a sentence.
+    pub fn told(&self, names: &[&str]) -> String {
+        let name = names[self.candidate];
+        let others: Vec<&str> = self.imitated_by.iter().map(|(index, _)| names[*index]).collect();
+        match (others.is_empty(), self.exact) {
+            (true, true) => format!("The recording does not react to `{name}` at all; its prior stands."),
+            (true, false) => {
+                format!("The recording is too short or too noisy to tell `{name}` better than its prior.")
+            }
+            (false, _) => format!(
+                "`{name}` cannot be told apart from `{}`: only a combination of them is known.",
+                others.join("`, `")
+            ),
+        }
+    }
+}
+
 /// Below this share of its own effect, what is left of a candidate is rounding.
 const ROUNDING: f64 = 1e-7;
 /// A candidate with less than this share of the strongest effect has none.

@@ -81,6 +81,7 @@ pub struct Measured {
 }
 
 /// A scenario with the recording that it is held against.
+#[derive(Clone)]
 pub struct Study<'a> {
     scenario: &'a Scenario,
     registry: &'a Registry,
@@ -185,10 +186,14 @@ impl<'a> Study<'a> {
     /// # Errors
     /// [`StudyError::Scenario`].
     pub fn model_of(&self, scenario: &Scenario, run: &Measured, values: &[f64]) -> Result<Model, StudyError> {
-        let free = self.paths.iter().map(String::as_str).zip(values.iter().copied());
-        let known = run.known.iter().map(|(path, value)| (path.as_str(), *value));
-        let known = known.filter(|(path, _)| !self.paths.iter().any(|free| free == path));
-        let changes: Vec<(&str, f64)> = free.chain(known).collect();
+        let known = |path: &str| run.known.iter().find(|(own, _)| own == path).map(|(_, value)| *value);
+        // What is known of one run, as ballast is, differs from the rest by as much, whatever the rest is fitted to.
+        let free = self.paths.iter().zip(&self.parameters).zip(values).map(|((path, parameter), value)| {
+            (path.as_str(), value + known(path).map_or(0.0, |known| known - parameter.value))
+        });
+        let fixed = run.known.iter().map(|(path, value)| (path.as_str(), *value));
+        let fixed = fixed.filter(|(path, _)| !self.paths.iter().any(|free| free == path));
+        let changes: Vec<(&str, f64)> = free.chain(fixed).collect();
         Ok(scenario.model_with(&changes, self.registry)?)
     }
 

@@ -18,6 +18,7 @@ mod contradiction;
 mod crossval;
 mod error;
 mod events;
+mod experiment;
 mod faults;
 mod gram;
 mod locate;
@@ -41,6 +42,7 @@ mod words;
 pub use balance::Kind;
 pub use case::{Options, Progress};
 pub use error::DiagnoseError;
+pub use experiment::Experiment;
 pub use map::{Mismatch, Over};
 pub use report::{
     Calibrated, Diagnosed, Diagnosis, FindingKind, FindingReport, Fit, FitRuns, Interval, LeftOver,
@@ -83,7 +85,9 @@ pub fn diagnose(
     refine::spells(&case, &system, &events, &mut refined);
     let withheld = contradiction::withhold(&case, &mut refined);
     let proof = prove::prove(&case, &system, &refined)?;
-    let beside = report::Beside { faults: &faults, events: &events, withheld };
+    let next = experiment::propose(&case, &system, &pool, &found, &refined)?;
+    refined.null_space.clone_from(&next.null_space);
+    let beside = report::Beside { faults: &faults, events: &events, withheld, next };
     report::report(&case, &system, &found, &refined, &proof, &beside)
 }
 

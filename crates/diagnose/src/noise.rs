@@ -20,6 +20,16 @@ pub enum Shape {
     Averaged,
 }
 
+impl Shape {
+    /// Correlation of neighbouring rows by the sensor.
+    fn beside(self) -> f64 {
+        match self {
+            Self::Differenced => -0.5,
+            Self::Averaged => 0.25,
+        }
+    }
+}
+
 /// The noise of one balance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
@@ -65,12 +75,19 @@ impl Noise {
         (self.process / self.sensor.max(f64::MIN_POSITIVE)).min(MOST)
     }
 
+    /// Covariance of so many rows that follow each other.
+    pub fn covariance(&self, rows: usize) -> DMatrix<f64> {
+        let beside = self.shape.beside();
+        DMatrix::from_fn(rows, rows, |row, column| {
+            let apart = row.abs_diff(column);
+            let sensor = [1.0 + APART, beside].get(apart).copied().unwrap_or(0.0);
+            self.sensor * sensor + self.process * self.persistence.powf(apart as f64)
+        })
+    }
+
     /// What whitens chunks of up to so many rows; none where the covariance is not positive.
     pub fn whitener(&self, longest: usize) -> Option<Whitener> {
-        let beside = match self.shape {
-            Shape::Differenced => -0.5,
-            Shape::Averaged => 0.25,
-        };
+        let beside = self.shape.beside();
         let (rho, s0, s1) = (self.persistence, self.sensor * (1.0 + APART), self.sensor * beside);
         // Diagonals of T Σ Tᵀ; its first row has nothing to subtract.
         let inner = [-rho * s1, s1 * (1.0 + rho * rho) - rho * s0, s0 * (1.0 + rho * rho) - 2.0 * rho * s1];
@@ -217,6 +234,15 @@ impl Whitener {
         }
     }
 
+    /// tr Σ⁻¹S: the square that whitened noise of another kind is expected to have over so many rows.
+    pub fn trace(&self, rows: usize, noise: &Noise) -> f64 {
+        let mut once = noise.covariance(rows);
+        self.whiten_all(&mut once);
+        let mut twice = once.transpose();
+        self.whiten_all(&mut twice);
+        twice.trace()
+    }
+
     /// ln |Σ| of so many rows.
     pub fn log_determinant(&self, rows: usize) -> f64 {
         self.log_determinants[rows.min(self.log_determinants.len() - 1)]
@@ -250,22 +276,12 @@ impl Whiteners {
 mod tests {
     use super::*;
 
-    fn covariance(noise: &Noise, length: i32) -> DMatrix<f64> {
-        let beside = if noise.shape == Shape::Differenced { -0.5 } else { 0.25 };
-        let rows = usize::try_from(length).unwrap();
-        DMatrix::from_fn(rows, rows, |row, column| {
-            let apart = i32::try_from(row.abs_diff(column)).unwrap();
-            let sensor = [1.0 + APART, beside].get(row.abs_diff(column)).copied().unwrap_or(0.0);
-            noise.sensor * sensor + noise.process * noise.persistence.powi(apart)
-        })
-    }
-
     #[test]
     fn three_diagonals_whiten_as_the_dense_covariance_does() {
         for shape in [Shape::Differenced, Shape::Averaged] {
             for (sensor, process, persistence) in [(2.0, 0.0, 0.0), (1.0, 0.7, 0.9), (0.0, 3.0, 0.6)] {
                 let noise = Noise { shape, sensor, process, persistence };
-                let dense = covariance(&noise, 9);
+                let dense = noise.covariance(9);
                 let values = DVector::from_fn(9, |row, _| (1.7 * row as f64).sin() + 0.3);
                 let expected = (values.transpose() * dense.clone().try_inverse().unwrap() * &values)[(0, 0)];
                 let whitener = noise.whitener(20).unwrap();
@@ -279,7 +295,7 @@ mod tests {
     #[test]
     fn the_noise_that_made_a_residual_is_found_again() {
         let made = Noise { shape: Shape::Differenced, sensor: 4.0, process: 1.0, persistence: 0.8 };
-        let factor = covariance(&made, 140).cholesky().unwrap().unpack();
+        let factor = made.covariance(140).cholesky().unwrap().unpack();
         let mut draws = headland_calibrate::statistics::Draws::new(5, 0);
         let all: Vec<DVector<f64>> =
             (0..40).map(|_| &factor * DVector::from_fn(140, |_, _| draws.normal())).collect();

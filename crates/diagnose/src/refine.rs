@@ -105,7 +105,6 @@ pub fn refine(case: &Case, system: &System, pool: &Pool, found: &Found) -> Resul
     for ((place, term), estimate) in slots.iter().zip(&fitted.estimates[count..]) {
         refined.causes[physics[*place]].values[*term] = (estimate.value, estimate.ci95);
     }
-    refined.null_space = fitted.null_space;
     Ok(refined)
 }
 

@@ -9,14 +9,16 @@ use headland_trace::{Channel, Trace};
 use headland_units::constants::STANDARD_GRAVITY_M_S2;
 
 /// The body pitches on its tyres while it speeds up, and the accelerometer with it.
-const PITCH: &str = "pitch";
+pub const PITCH: &str = "pitch";
 /// How much, usually [rad s²/m]: 0.0015 to 0.0023 rad at 0.7 m/s², for a tractor 1.3 m high on 3.6 m of wheelbase.
-const PITCH_RAD_S2_M: f64 = 0.004;
+pub const PITCH_RAD_S2_M: f64 = 0.004;
 /// A scale that nobody would call wrong.
 const SMALL_SCALE: f64 = 0.005;
 
 /// A fault that is free in every diagnosis.
 pub struct Small {
+    /// Which.
+    pub id: &'static str,
     /// Its column.
     pub column: Column,
     /// Its usual size.
@@ -57,7 +59,7 @@ pub fn small_faults(case: &Case, system: &System) -> Result<Vec<Small>, Diagnose
                 // What drives a battery's current has latencies of its own.
                 system.silence(&mut column, |own| own == Kind::Motion);
             }
-            all.push(Small { column, sd });
+            all.push(Small { id, column, sd });
         }
     }
     Ok(all)

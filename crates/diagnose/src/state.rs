@@ -46,7 +46,7 @@ pub struct State<'a> {
 }
 
 /// Effects are sometimes several times their usual size: so much wider is the prior that they are estimated with.
-const WIDER: f64 = 3.0;
+pub const WIDER: f64 = 3.0;
 
 /// What it costs to have had the choice among so many shapes: ln of their number. A spell at the same time in every run,
 /// with nothing that tells why, is less likely from the start.

@@ -18,6 +18,8 @@ pub struct Pool {
     pub sd: Vec<f64>,
     /// How many columns belong to no trial.
     pub nuisance: usize,
+    /// Column of each small fault that is free throughout.
+    pub small: Vec<(&'static str, usize)>,
     /// Column of each fault that was corrected already: what is left of it.
     pub corrected: Vec<(&'static str, usize)>,
     /// The trials.
@@ -55,8 +57,8 @@ const REST: f64 = 0.1;
 /// A column weaker than this share of the residual says nothing.
 const WEAKEST: f64 = 1e-7;
 
-/// Columns of the free parameters, of small faults and of all causes.
-pub fn pool(case: &Case, system: &System) -> Result<Pool, DiagnoseError> {
+/// Columns of the free parameters and of faults of sensors that belong to no trial.
+pub fn nuisance(case: &Case, system: &System) -> Result<Pool, DiagnoseError> {
     let mut pool = Pool::default();
     let priors = case.study.priors();
     for (index, parameter) in case.study.parameters.iter().enumerate() {
@@ -73,6 +75,7 @@ pub fn pool(case: &Case, system: &System) -> Result<Pool, DiagnoseError> {
         pool.sd.push(sd);
     }
     for small in small_faults(case, system)? {
+        pool.small.push((small.id, pool.columns.len()));
         pool.columns.push(small.column);
         pool.sd.push(small.sd);
     }
@@ -84,6 +87,12 @@ pub fn pool(case: &Case, system: &System) -> Result<Pool, DiagnoseError> {
         pool.sd.push(scale);
     }
     pool.nuisance = pool.columns.len();
+    Ok(pool)
+}
+
+/// Columns of the free parameters, of small faults and of all causes.
+pub fn pool(case: &Case, system: &System) -> Result<Pool, DiagnoseError> {
+    let mut pool = nuisance(case, system)?;
     for (number, cause) in case.causes.iter().enumerate() {
         case.step(cause.id)?;
         let corrected = case.corrections.iter().any(|correction| correction.id == cause.id);
@@ -134,7 +143,7 @@ fn silent(case: &Case) -> Vec<Vec<f64>> {
 }
 
 /// Whether a cause is tried on a balance: causes of motion are looked for in powers only where no force was measured.
-fn tried_on(cause: &Cause, kind: Kind, system: &System) -> bool {
+pub fn tried_on(cause: &Cause, kind: Kind, system: &System) -> bool {
     let power = matches!(kind, Kind::Battery | Kind::Fuel);
     let of_motion = cause.balances.contains(&Kind::Motion) && system.has(Kind::Motion);
     cause.balances.contains(&kind) && !(power && of_motion)

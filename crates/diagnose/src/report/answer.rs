@@ -5,6 +5,7 @@ use super::series::{corrections, effects, residuals};
 use super::shown::shown;
 use super::{Calibrated, Diagnosed, Diagnosis, Fit, FitRuns, Tried, Verdict, bands};
 use crate::events::Event;
+use crate::experiment::Proposals;
 use crate::faults::Fault;
 use crate::map::map;
 use crate::prove::{Errors, Proof, prove};
@@ -21,6 +22,8 @@ pub struct Beside<'a> {
     pub events: &'a [Event],
     /// Why nothing is claimed, where it is not.
     pub withheld: Option<String>,
+    /// What to drive next.
+    pub next: Proposals,
 }
 
 /// Puts the answer together.
@@ -32,7 +35,7 @@ pub fn report(
     proof: &Proof,
     beside: &Beside,
 ) -> Result<Diagnosed, DiagnoseError> {
-    let mut findings = findings(case, system, found, refined, proof);
+    let mut findings = findings(case, system, found, refined, proof, &beside.next.next);
     let mut notes = case.study.notes.clone();
     if beside.withheld.is_some() {
         notes.extend(beside.faults.iter().map(words::fault));
@@ -82,6 +85,7 @@ pub fn report(
         fit,
         calibrated: calibrated(refined),
         null_space,
+        experiments: beside.next.experiments.clone(),
         unproven: found.unproven.iter().map(|cause| case.causes[*cause].id.to_owned()).collect(),
         notes,
         tried: tried(case, found),
@@ -132,6 +136,7 @@ pub fn inconclusive(
         fit: fit(case, None, &proof),
         calibrated: Vec::new(),
         null_space: statements.to_vec(),
+        experiments: Vec::new(),
         unproven: Vec::new(),
         notes,
         tried: Vec::new(),

@@ -18,6 +18,7 @@ pub fn findings(
     found: &Found,
     refined: &Refined,
     proof: &Proof,
+    next: &[Option<String>],
 ) -> Vec<FindingReport> {
     let mut findings: Vec<FindingReport> = Vec::new();
     for (place, (cured, effect)) in refined.causes.iter().zip(&proof.effects).enumerate() {
@@ -53,7 +54,7 @@ pub fn findings(
             parameters,
             share_of_mismatch: share,
             evidence: [cured.accepted.gain, cured.accepted.by_chance],
-            next_experiment: experiment(&cured.cause, cured, case),
+            next_experiment: next[place].clone().unwrap_or_else(|| experiment(&cured.cause, cured, case)),
             indistinguishable_from: rivals,
         });
     }

@@ -9,6 +9,7 @@ mod shown;
 pub use answer::{Beside, inconclusive, report};
 
 use crate::balance::Kind;
+use crate::experiment::Experiment;
 use crate::map::Mismatch;
 use headland_trace::Run;
 use serde::Serialize;
@@ -191,6 +192,8 @@ pub struct Diagnosis {
     pub calibrated: Vec<Calibrated>,
     /// What the data cannot separate.
     pub null_space: Vec<String>,
+    /// Runs that would separate causes in doubt, the one that tells most first.
+    pub experiments: Vec<Experiment>,
     /// Causes that explain each run by itself, but not one from the others.
     pub unproven: Vec<String>,
     /// What was decided on the way.

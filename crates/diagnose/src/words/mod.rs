@@ -5,7 +5,7 @@ mod number;
 mod place;
 
 pub use answer::{Told, answer, inconclusive};
-pub use number::plain;
+pub use number::{number, plain};
 
 use crate::balance::Kind;
 use crate::catalogue::{Cause, Class};

@@ -1,0 +1,125 @@
+//! Which combinations of free parameters and accepted causes the recordings know, and which they do not.
+
+use crate::gram::{Column, Whitened};
+use crate::refine::Refined;
+use crate::search::Found;
+use crate::trial::Pool;
+use crate::words::number;
+use crate::{Case, System};
+use headland_calibrate::separable::{Blind, blind_directions};
+
+/// A parameter of a cause or of the scenario.
+struct Candidate {
+    /// As a sentence names it.
+    name: String,
+    unit: String,
+    /// One standard deviation of its prior.
+    size: f64,
+    /// Its column.
+    column: usize,
+}
+
+/// The directions that the recordings do not see, in sentences.
+pub fn sentences(case: &Case, system: &System, pool: &Pool, found: &Found, refined: &Refined) -> Vec<String> {
+    let candidates = candidates(case, pool, refined);
+    let columns: Vec<&Column> = candidates.iter().map(|one| &pool.columns[one.column]).collect();
+    let whitened = Whitened::new(&system.chunks, &system.residual, &columns, &found.noises.1);
+    let Some(whitened) = whitened else { return Vec::new() };
+    let information = whitened.reduced(&system.chunks, &case.fit).matrix;
+    let sizes: Vec<f64> = candidates.iter().map(|one| one.size).collect();
+    let names: Vec<&str> = candidates.iter().map(|one| one.name.as_str()).collect();
+    let told = |blind: &Blind| {
+        if blind.imitated_by.is_empty() { blind.told(&names) } else { together(blind, &candidates) }
+    };
+    blind_directions(&information, &sizes).iter().map(told).collect()
+}
+
+fn candidates(case: &Case, pool: &Pool, refined: &Refined) -> Vec<Candidate> {
+    let unit = |name: &str| headland_units::unit_of_name(name).map_or_else(String::new, |unit| unit.symbol);
+    let mut all: Vec<Candidate> = case
+        .study
+        .parameters
+        .iter()
+        .enumerate()
+        .map(|(index, parameter)| Candidate {
+            name: parameter.name.clone(),
+            unit: unit(&parameter.name),
+            size: pool.sd[index],
+            column: index,
+        })
+        .collect();
+    for cured in &refined.causes {
+        if cured.cause.is_function() || !cured.events.is_empty() {
+            continue;
+        }
+        let corrected = pool.corrected.iter().find(|(id, _)| *id == cured.cause.id);
+        let trial = &cured.accepted.trial;
+        let columns = corrected.map_or(trial.columns.clone(), |(_, column)| vec![*column]);
+        for (column, term) in columns.into_iter().zip(&trial.terms) {
+            let term = &cured.cause.terms[*term];
+            all.push(Candidate {
+                name: format!("{}.{}", cured.cause.id, term.name),
+                unit: if term.unit == "1" { String::new() } else { term.unit.to_owned() },
+                size: term.scale,
+                column,
+            });
+        }
+    }
+    all
+}
+
+/// 'Raising this and lowering that changes nothing.'
+fn together(blind: &Blind, candidates: &[Candidate]) -> String {
+    let own = &candidates[blind.candidate];
+    let amount = |value: f64, unit: &str| {
+        if unit.is_empty() { number(value) } else { format!("{} {unit}", number(value)) }
+    };
+    let mut names = vec![format!("`{}`", own.name)];
+    let mut moves = Vec::new();
+    for (index, share) in &blind.imitated_by {
+        let other = &candidates[*index];
+        let way = if *share > 0.0 { "lowering" } else { "raising" };
+        names.push(format!("`{}`", other.name));
+        moves.push(format!("{way} `{}` by {}", other.name, amount(share.abs() * own.size, &other.unit)));
+    }
+    let nothing = if blind.exact { "nothing" } else { "next to nothing" };
+    format!(
+        "These recordings only know the sum of what {} do: raising `{}` by {} and {} changes {nothing} that was measured.",
+        listed(&names),
+        own.name,
+        amount(own.size, &own.unit),
+        listed(&moves)
+    )
+}
+
+/// 'a, b and c'.
+pub fn listed(items: &[String]) -> String {
+    match items {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_direction_is_told_with_what_to_raise_and_what_to_lower() {
+        let candidate = |name: &str, unit: &str, size: f64| Candidate {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            size,
+            column: 0,
+        };
+        let all = [candidate("soil.coefficient", "", 0.01), candidate("brake_drag.force_n", "N", 1000.0)];
+        let blind =
+            Blind { candidate: 1, exact: true, imitated_by: vec![(0, 7.84e-6)], deviation: f64::INFINITY };
+        assert_eq!(
+            together(&blind, &all),
+            "These recordings only know the sum of what `brake_drag.force_n` and `soil.coefficient` do: raising \
+             `brake_drag.force_n` by 1000 N and lowering `soil.coefficient` by 0.00784 changes nothing that was measured."
+        );
+    }
+}

@@ -1,0 +1,123 @@
+//! What would tell of a function of time. No other run shares it, so no run can be drafted; but how well it is known, whether
+//! the runs at hand repeat it, and how the odds grow with their number is in the data.
+
+use super::null_space::listed;
+use super::{Candidate, TELLS};
+use crate::Case;
+use crate::profile::Function;
+use crate::refine::{Cured, HALF_95};
+use crate::words::number;
+use headland_calibrate::statistics::median;
+
+/// Functions that are correlated by more than this in every two runs take the same course.
+const ALIKE: f64 = 0.8;
+/// Functions are held against each other at so many times.
+const TIMES: u32 = 60;
+/// Nobody drives the same run more often than this.
+const MOST_RUNS: f64 = 30.0;
+
+/// What to drive or log next.
+pub fn next(case: &Case, cured: &Cured, rivals: &[Candidate]) -> Option<String> {
+    let function = cured.function()?;
+    let (low, high, sd) = reach(case, function)?;
+    let unit = cured.cause.terms.first().map_or("", |term| term.unit);
+    let amount = |value: f64| format!("{} {unit}", number(value));
+    let repeated = match repeated(case, function) {
+        Some((runs, least)) if least > ALIKE => format!(
+            "it takes the same course in the {runs} runs at hand (correlation {least:.2} and more), so it goes with the \
+             clock or with what is driven; drive another cycle to tell which"
+        ),
+        Some((runs, least)) => format!(
+            "it takes another course in each of the {runs} runs at hand (correlation down to {least:.2}), so further runs \
+             tell nothing of it"
+        ),
+        None => format!(
+            "drive the same run once more: whether it comes back would be told wherever it changes by more than {}",
+            amount(HALF_95 * std::f64::consts::SQRT_2 * sd)
+        ),
+    };
+    let rivals: Vec<(&'static str, f64)> = rivals.iter().map(|one| (one.id, one.behind)).collect();
+    let more = more_of_the_same(case, &rivals).map_or(String::new(), |more| format!("; {more}"));
+    Some(format!(
+        "{}: at each time it is known to ±{} between {} and {}, so a log of that resolution would prove it; {repeated}{more}",
+        cured.cause.experiment,
+        number(HALF_95 * sd),
+        number(low),
+        amount(high),
+    ))
+}
+
+/// How many runs like those at hand would tell a cause from rivals, where one of the two is a function of time: each run
+/// pays for its own function, so the odds grow with the number of runs.
+pub fn more_of_the_same(case: &Case, rivals: &[(&'static str, f64)]) -> Option<String> {
+    if rivals.is_empty() {
+        return None;
+    }
+    let runs = case.fit.iter().filter(|fit| **fit).count() as f64;
+    let told = |(id, now): &(&'static str, f64)| {
+        let more = (TELLS * runs / now.max(0.0) - runs).ceil().max(1.0);
+        if more > MOST_RUNS {
+            return format!("`{id}` is not told by any number of runs like these (ln p {now:.1} of {runs})");
+        }
+        let these = if more > 1.0 { "runs like these" } else { "run like these" };
+        format!("{more} {these} should tell it from `{id}` (ln p {now:.1} of {runs}, and as much of each)")
+    };
+    Some(listed(&rivals.iter().map(told).collect::<Vec<_>>()))
+}
+
+/// Least and greatest value over the runs that were fitted, and the usual standard deviation.
+fn reach(case: &Case, function: &Function) -> Option<(f64, f64, f64)> {
+    let (mut all, mut sds) = (Vec::new(), Vec::new());
+    for ((values, sd), _) in function.values.iter().zip(&case.fit).filter(|(_, fit)| **fit) {
+        all.extend(values.iter().copied());
+        sds.extend(sd.iter().copied());
+    }
+    let low = all.iter().copied().reduce(f64::min)?;
+    let high = all.iter().copied().reduce(f64::max)?;
+    Some((low, high, median(&sds)))
+}
+
+/// The number of runs that were fitted and the least correlation between two of their functions.
+fn repeated(case: &Case, function: &Function) -> Option<(usize, f64)> {
+    let fitted: Vec<usize> = (0..case.runs.len()).filter(|run| case.fit[*run]).collect();
+    let start_s = |run: usize| case.runs[run].measured.trace.time_s().first().copied().unwrap_or(0.0);
+    let duration_s = |run: &usize| case.runs[*run].measured.trace.duration_s();
+    let shortest_s = fitted.iter().map(duration_s).reduce(f64::min)?;
+    let courses: Vec<Vec<f64>> = fitted
+        .iter()
+        .map(|run| {
+            let at = |index: u32| start_s(*run) + shortest_s * f64::from(index) / f64::from(TIMES);
+            (0..=TIMES).map(|index| function.value(*run, at(index))).collect()
+        })
+        .collect();
+    let pairs = (0..courses.len()).flat_map(|one| (0..one).map(move |other| (one, other)));
+    let least = pairs.map(|(one, other)| correlation(&courses[one], &courses[other])).reduce(f64::min)?;
+    least.is_finite().then_some((fitted.len(), least))
+}
+
+fn correlation(one: &[f64], other: &[f64]) -> f64 {
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let (mean_one, mean_other) = (mean(one), mean(other));
+    let (mut squares, mut others, mut products) = (0.0, 0.0, 0.0);
+    for (one, other) in one.iter().zip(other) {
+        let (one, other) = (one - mean_one, other - mean_other);
+        squares += one * one;
+        others += other * other;
+        products += one * other;
+    }
+    products / (squares * others).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_rises_with_the_other_is_alike_and_what_falls_is_not() {
+        let one: Vec<f64> = (0..20).map(f64::from).collect();
+        let doubled: Vec<f64> = one.iter().map(|value| 2.0 * value + 3.0).collect();
+        let falling: Vec<f64> = one.iter().map(|value| -value).collect();
+        assert!((correlation(&one, &doubled) - 1.0).abs() < 1e-12);
+        assert!((correlation(&one, &falling) + 1.0).abs() < 1e-12);
+    }
+}

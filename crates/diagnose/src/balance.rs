@@ -74,10 +74,16 @@ pub struct System {
     pub chunks: Vec<Chunk>,
     /// Measured minus modelled, with the nominal model.
     pub residual: Column,
+    /// Length of a block [s].
+    pub block_s: f64,
 }
 
 /// Rows wanted of a run.
 const ROWS_PER_RUN: f64 = 300.0;
+/// Gusts, a driver's foot, a rough surface: what lasts longer than this is no noise, it is physics [s].
+const LASTING_S: f64 = 5.0;
+/// Rows of a balance at most: more only take longer.
+const MOST_ROWS: f64 = 16_000.0;
 /// Lower heating value that turns fuel into watts in residuals [J/kg]: diesel, EN 590; a scale only.
 pub const FUEL_J_KG: f64 = 42.8e6;
 
@@ -105,7 +111,7 @@ impl System {
                 all.extend(own);
             }
         }
-        let mut system = Self { kinds: kept, chunks: all, residual: Vec::new() };
+        let mut system = Self { kinds: kept, chunks: all, residual: Vec::new(), block_s };
         system.residual = system.residual_of(runs, said);
         system
     }
@@ -154,7 +160,8 @@ impl System {
         let of = |(number, kind): (usize, &Kind)| {
             let own =
                 self.chunks.iter().zip(left).filter(|(chunk, _)| chunk.balance == number && fit[chunk.run]);
-            Noise::of(kind.shape(), &own.map(|(_, values)| values).collect::<Vec<_>>())
+            let most = (-self.block_s / LASTING_S).exp();
+            Noise::of(kind.shape(), most, &own.map(|(_, values)| values).collect::<Vec<_>>())
         };
         Noises(self.kinds.iter().enumerate().map(of).collect())
     }
@@ -198,7 +205,8 @@ pub fn block_s(runs: &[Recorded]) -> f64 {
     durations.sort_by(f64::total_cmp);
     let median = durations.get(durations.len() / 2).copied().unwrap_or(1.0);
     let period = longest_period_s(runs);
-    (median / ROWS_PER_RUN).max(0.04).min(1.0_f64.max(2.0 * period)).max(2.0 * period)
+    let whole: f64 = durations.iter().sum();
+    (median / ROWS_PER_RUN).max(0.04).min(1.0_f64.max(2.0 * period)).max(2.0 * period).max(whole / MOST_ROWS)
 }
 
 /// Sampling period of the slowest run [s].

@@ -71,7 +71,7 @@ impl State<'_> {
         let settled = |part: Part| {
             let mut parts = stand.parts.clone();
             parts.push(part);
-            let settled = self.settle(parts, &stand.noises)?;
+            let settled = self.settle(&parts, &stand.noises)?;
             (!self.impossible(&settled.parts, &settled.estimate)).then_some(Contest { stand: settled })
         };
         let mut judged: Vec<Contest> = finalists.into_par_iter().filter_map(settled).collect();

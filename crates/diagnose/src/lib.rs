@@ -10,6 +10,7 @@
 #![allow(clippy::result_large_err, reason = "a diagnosis fails once, not in a loop")]
 
 mod balance;
+mod band;
 mod case;
 mod catalogue;
 mod change_points;
@@ -22,6 +23,7 @@ mod experiment;
 mod faults;
 mod gram;
 mod locate;
+mod losses;
 mod map;
 mod noise;
 mod profile;

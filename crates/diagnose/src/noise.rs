@@ -116,8 +116,9 @@ impl Noise {
         Some(Whitener { persistence: rho, factor, log_determinants })
     }
 
-    /// The noise that makes residuals (one vector a chunk) most likely.
-    pub fn of(shape: Shape, residuals: &[&DVector<f64>]) -> Self {
+    /// The noise that makes residuals (one vector a chunk) most likely; the process correlates neighbouring rows by `most`
+    /// at most.
+    pub fn of(shape: Shape, most: f64, residuals: &[&DVector<f64>]) -> Self {
         let nothing = Self { shape, sensor: 1.0, process: 0.0, persistence: 0.0 };
         let mut best = (f64::INFINITY, nothing);
         let mut place = (0.0, 0.0);
@@ -130,7 +131,7 @@ impl Noise {
             }
         };
         for share in SHARES {
-            for persistence in PERSISTENCES {
+            for persistence in PERSISTENCES.into_iter().map(|one| one.min(most)) {
                 if share > 0.0 || persistence == 0.0 {
                     consider(share, persistence, &mut place);
                 }
@@ -152,7 +153,7 @@ impl Noise {
                 for persistence in
                     [persistence - persistence_way.0, persistence, persistence + persistence_way.1]
                 {
-                    if share > 0.0 {
+                    if share > 0.0 && persistence <= most {
                         consider(share, persistence, &mut place);
                     }
                 }
@@ -299,7 +300,7 @@ mod tests {
         let mut draws = headland_calibrate::statistics::Draws::new(5, 0);
         let all: Vec<DVector<f64>> =
             (0..40).map(|_| &factor * DVector::from_fn(140, |_, _| draws.normal())).collect();
-        let found = Noise::of(Shape::Differenced, &all.iter().collect::<Vec<_>>());
+        let found = Noise::of(Shape::Differenced, 1.0, &all.iter().collect::<Vec<_>>());
         assert!((found.sensor / 4.0 - 1.0).abs() < 0.15, "{found:?}");
         assert!((found.process - 1.0).abs() < 0.4 && (found.persistence - 0.8).abs() < 0.12, "{found:?}");
     }

@@ -6,11 +6,13 @@
 //! Source: Rasmussen and Williams, *Gaussian Processes for Machine Learning* (2006), sections 2.7 and B.2.1.
 
 use crate::balance::System;
+use crate::band::{Band, Factor};
 use crate::catalogue::Form;
 use crate::gram::{Column, Reduced, Whitened};
 use crate::recorded::Recorded;
 use crate::rows::{Chunk, Row};
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 /// How a function is spread over knots.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,8 +57,8 @@ pub struct Function {
     pub spread: Spread,
 }
 
-/// Knots of a group are at most so many.
-const MOST_KNOTS: f64 = 240.0;
+/// Knots of a group are at most so many: a drive of 25 minutes has as many rows of a second, and they tell no more.
+const MOST_KNOTS: f64 = 1500.0;
 /// Knots to one length of the process.
 const KNOTS_PER_LENGTH: f64 = 2.0;
 
@@ -131,18 +133,24 @@ impl<'a> Profile<'a> {
     ) -> Option<Reduced> {
         let groups = self.groups(spread);
         let mut reduced = whitened.reduced(chunks, fit);
-        for (number, group) in groups.iter().enumerate() {
-            let Some(parts) = self.parts(whitened, chunks, fit, number, group, spread) else { continue };
-            let cholesky = parts.matrix.cholesky()?;
-            let solved = cholesky.solve(&parts.cross);
-            let width = reduced.matrix.nrows();
-            let taken = parts.cross.transpose() * solved;
+        let width = reduced.matrix.nrows();
+        let of_group = |(number, group): (usize, &Group)| {
+            let Some(parts) = self.parts(whitened, chunks, fit, number, group, spread) else {
+                return Ok(None);
+            };
+            let Parts { matrix, mut cross } = parts;
+            let factor = matrix.cholesky().ok_or(())?;
+            factor.half_solve(&mut cross);
+            let log = factor.log_determinant() - log_precision(group, spread);
+            Ok(Some((cross.transpose() * &cross, log)))
+        };
+        let taken: Result<Vec<_>, ()> = groups.par_iter().enumerate().map(of_group).collect();
+        for (taken, log) in taken.ok()?.into_iter().flatten() {
             // The residual is the last column of the cross products.
             reduced.matrix -= taken.view((0, 0), (width, width));
             reduced.vector -= taken.view((0, width), (width, 1)).column(0);
             reduced.scalar -= taken[(width, width)];
-            let log = 2.0 * cholesky.l_dirty().diagonal().iter().map(|value| value.ln()).sum::<f64>();
-            reduced.log_determinant += log - log_precision(group, spread);
+            reduced.log_determinant += log;
         }
         Some(reduced)
     }
@@ -158,23 +166,21 @@ impl<'a> Profile<'a> {
         beta: &DVector<f64>,
     ) -> Function {
         let groups = self.groups(spread);
-        let values = groups.iter().enumerate().map(|(number, group)| {
-            let nothing = || {
+        let of_group = |(number, group): (usize, &Group)| {
+            let parts = self.parts(whitened, chunks, fit, number, group, spread);
+            let solved = parts.and_then(|Parts { matrix, cross }| Some((matrix.cholesky()?, cross)));
+            let Some((factor, cross)): Option<(Factor, DMatrix<f64>)> = solved else {
                 let size = DVector::from_element(group.count, spread.size);
-                (DVector::zeros(group.count), size)
+                return (DVector::zeros(group.count), size);
             };
-            let Some(parts) = self.parts(whitened, chunks, fit, number, group, spread) else {
-                return nothing();
-            };
-            let Some(cholesky) = parts.matrix.cholesky() else { return nothing() };
-            let mut right = parts.cross.column(parts.cross.ncols() - 1).into_owned();
+            let mut right = cross.column(cross.ncols() - 1).into_owned();
             for (index, column) in used.iter().enumerate() {
-                right -= parts.cross.column(*column) * beta[index];
+                right -= cross.column(*column) * beta[index];
             }
-            let sd = cholesky.inverse().diagonal().map(f64::sqrt);
-            (cholesky.solve(&right), sd)
-        });
-        Function { values: values.collect(), groups: groups.clone(), spread: *spread }
+            (factor.solve(&right), factor.inverse_diagonal().map(f64::sqrt))
+        };
+        let values = groups.par_iter().enumerate().map(of_group).collect();
+        Function { values, groups, spread: *spread }
     }
 
     fn parts(
@@ -187,32 +193,38 @@ impl<'a> Profile<'a> {
         spread: &Spread,
     ) -> Option<Parts> {
         let width = whitened.width();
-        let mut matrix = precision(group, spread);
+        let own: Vec<usize> = (0..chunks.len())
+            .filter(|index| fit[chunks[*index].run] && self.group_of[chunks[*index].run] == number)
+            .collect();
+        // Whitened rows know all knots of their chunk, so the widest chunk makes the band.
+        let reach =
+            own.iter().map(|index| self.touched(*index, group)).map(|(low, high)| high - low).max()?;
+        let mut matrix = precision(group, spread, reach);
         let mut cross = DMatrix::zeros(group.count, width + 1);
-        let mut any = false;
-        for (index, chunk) in chunks.iter().enumerate() {
-            if !fit[chunk.run] || self.group_of[chunk.run] != number {
-                continue;
-            }
-            any = true;
+        for index in own {
+            let chunk = &chunks[index];
             let (first, mut basis) = self.basis(index, chunk, group);
             whitened.whiteners.of(chunk).whiten_all(&mut basis);
             let own = basis.transpose() * &basis;
             let with = basis.transpose() * &whitened.chunks[index];
             let local = basis.ncols();
-            let mut view = matrix.view_mut((first, first), (local, local));
-            view += own;
+            matrix.add_block(first, &own);
             let mut view = cross.view_mut((first, 0), (local, width + 1));
             view += with;
         }
-        any.then_some(Parts { matrix, cross })
+        Some(Parts { matrix, cross })
+    }
+
+    /// The first and the last knot that a chunk touches.
+    fn touched(&self, index: usize, group: &Group) -> (usize, usize) {
+        let at = &self.at[index];
+        (knot(group, at.min()).0, (knot(group, at.max()).0 + 1).min(group.count - 1))
     }
 
     /// Signature times hat functions, for the knots that a chunk touches.
     fn basis(&self, index: usize, chunk: &Chunk, group: &Group) -> (usize, DMatrix<f64>) {
         let at = &self.at[index];
-        let low = knot(group, at.min()).0;
-        let high = (knot(group, at.max()).0 + 1).min(group.count - 1);
+        let (low, high) = self.touched(index, group);
         let mut basis = DMatrix::zeros(chunk.rows.len(), high - low + 1);
         for row in 0..chunk.rows.len() {
             let (left, share) = knot(group, at[row]);
@@ -226,7 +238,7 @@ impl<'a> Profile<'a> {
 }
 
 struct Parts {
-    matrix: DMatrix<f64>,
+    matrix: Band,
     cross: DMatrix<f64>,
 }
 
@@ -266,16 +278,19 @@ fn forgetting(group: &Group, spread: &Spread) -> f64 {
     (-group.step / spread.length).exp()
 }
 
-fn precision(group: &Group, spread: &Spread) -> DMatrix<f64> {
+/// The prior's precision, in a band that reaches at least so far.
+fn precision(group: &Group, spread: &Spread, reach: usize) -> Band {
     let phi = forgetting(group, spread);
     let scale = 1.0 / (spread.size * spread.size * (1.0 - phi * phi));
     let last = group.count - 1;
-    DMatrix::from_fn(group.count, group.count, |row, column| match row.abs_diff(column) {
-        0 if row == 0 || row == last => scale,
-        0 => scale * (1.0 + phi * phi),
-        1 => -scale * phi,
-        _ => 0.0,
-    })
+    let mut band = Band::zeros(group.count, reach.max(1));
+    for row in 0..group.count {
+        band.add(row, row, if row == 0 || row == last { scale } else { scale * (1.0 + phi * phi) });
+        if row > 0 {
+            band.add(row, row - 1, -scale * phi);
+        }
+    }
+    band
 }
 
 /// ln |P| in closed form.
@@ -292,7 +307,7 @@ mod tests {
     fn the_closed_form_of_the_determinant_is_that_of_the_matrix() {
         let group = Group { from: 0.0, step: 3.0, count: 7 };
         let spread = Spread { length: 10.0, size: 0.3 };
-        let direct = precision(&group, &spread).determinant().ln();
+        let direct = precision(&group, &spread, 1).cholesky().unwrap().log_determinant();
         assert!((direct - log_precision(&group, &spread)).abs() < 1e-9);
     }
 
@@ -300,8 +315,10 @@ mod tests {
     fn the_precision_is_the_inverse_of_an_exponential_covariance() {
         let group = Group { from: 0.0, step: 3.0, count: 5 };
         let spread = Spread { length: 10.0, size: 0.3 };
-        let covariance = precision(&group, &spread).try_inverse().unwrap();
+        let factor = precision(&group, &spread, 1).cholesky().unwrap();
+        let row = factor.solve(&DVector::from_fn(5, |knot, _| f64::from(knot == 3)));
         let expected = 0.09 * (-6.0_f64 / 10.0).exp();
-        assert!((covariance[(1, 3)] - expected).abs() < 1e-12 && (covariance[(2, 2)] - 0.09).abs() < 1e-12);
+        assert!((row[1] - expected).abs() < 1e-12 && (row[3] - 0.09).abs() < 1e-12);
+        assert!((factor.inverse_diagonal()[2] - 0.09).abs() < 1e-12);
     }
 }

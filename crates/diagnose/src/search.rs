@@ -106,7 +106,7 @@ pub fn search(case: &Case, system: &System, pool: &Pool) -> Option<Found> {
 /// As [`search`], without some causes.
 pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]) -> Option<Found> {
     let state = State { case, system, pool, fit: &case.fit };
-    let first = state.settle(Vec::new(), &system.noises(&system.residual, &case.fit))?;
+    let first = state.settle(&[], &system.noises(&system.residual, &case.fit))?;
     let mut tried: Vec<Round> = Vec::new();
     let mut best = first.clone();
     let mut others: Vec<Stand> = Vec::new();
@@ -190,7 +190,7 @@ impl State<'_> {
             let lesser = (0..best.parts.len()).filter_map(|place| {
                 let mut parts = best.parts.clone();
                 parts.remove(place);
-                self.settle(parts, &best.noises)
+                self.settle(&parts, &best.noises)
             });
             let Some(top) = lesser.max_by(|one, other| one.score.total_cmp(&other.score)) else {
                 return Some(best);
@@ -257,7 +257,7 @@ impl State<'_> {
             let Some(worst) = worst.filter(|place| gains[*place] < LEAST) else { return Some((best, out)) };
             let mut parts = best.parts.clone();
             out.push(parts.remove(worst).trial.cause);
-            best = self.settle(parts, &best.noises)?;
+            best = self.settle(&parts, &best.noises)?;
         }
     }
 
@@ -274,7 +274,7 @@ impl State<'_> {
             let part = best.parts[place].clone();
             let mut others = best.parts.clone();
             others.remove(place);
-            let (gain, rivals) = match self.settle(others, &best.noises) {
+            let (gain, rivals) = match self.settle(&others, &best.noises) {
                 Some(lesser) => (best.score - lesser.score, self.rivals(&best, &part, &lesser)),
                 None => (needed, Vec::new()),
             };

@@ -152,11 +152,11 @@ impl<'a> State<'a> {
     }
 
     /// Estimates a set of causes, and lets the noise follow.
-    pub fn settle(&self, parts: Vec<Part>, start: &Noises) -> Option<Stand> {
+    pub fn settle(&self, parts: &[Part], start: &Noises) -> Option<Stand> {
         const ROUNDS: usize = 12;
         /// A growth of ln p below this is none.
         const SETTLED: f64 = 0.02;
-        let used = self.columns(&parts);
+        let used = self.columns(parts);
         let columns: Vec<&Column> = used.iter().map(|column| &self.pool.columns[*column]).collect();
         let all_sd = self.sd();
         let sd: Vec<f64> = used.iter().map(|column| all_sd[*column]).collect();
@@ -182,11 +182,11 @@ impl<'a> State<'a> {
                 made
             });
             let next = self.system.noises(&left, self.fit);
-            let score = estimate.log_evidence + self.heavy(&used, &estimate.beta) - self.choices(&parts);
+            let score = estimate.log_evidence + self.heavy(&used, &estimate.beta) - self.choices(parts);
             if best.as_ref().is_some_and(|one| score <= one.score + SETTLED) {
                 break;
             }
-            let parts = parts.clone();
+            let parts = parts.to_vec();
             best = Some(Stand { parts, used: used.clone(), noises, estimate, score, left, function: made });
             noises = next;
         }

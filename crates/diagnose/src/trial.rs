@@ -4,6 +4,7 @@
 use crate::balance::{Kind, System, change};
 use crate::catalogue::{Cause, Form};
 use crate::gram::Column;
+use crate::losses::small_losses;
 use crate::recorded::Recorded;
 use crate::said::Said;
 use crate::sensors::{fault, small_faults};
@@ -74,7 +75,7 @@ pub fn nuisance(case: &Case, system: &System) -> Result<Pool, DiagnoseError> {
         pool.columns.push(system.column(|kind| difference(case, kind, &after, step)));
         pool.sd.push(sd);
     }
-    for small in small_faults(case, system)? {
+    for small in small_faults(case, system)?.into_iter().chain(small_losses(case, system)) {
         pool.small.push((small.id, pool.columns.len()));
         pool.columns.push(small.column);
         pool.sd.push(small.sd);

@@ -63,7 +63,7 @@ fn beside(
         // Once more with the noise that is left then: what was fitted to the whole mismatch hides slow laws.
         let state = State { case, system, pool, fit: &case.fit };
         let with = |part: &Part| start.iter().cloned().chain([part.clone()]).collect::<Vec<Part>>();
-        if let Some(settled) = state.settle(with(&part), &found.stand.noises)
+        if let Some(settled) = state.settle(&with(&part), &found.stand.noises)
             && let Some(better) = self::law(case, system, pool, &start, &settled.noises, (kind, target))?
         {
             law = better;
@@ -75,7 +75,7 @@ fn beside(
     let state = State { case, system, pool, fit: &case.fit };
     let mut best: Option<Stand> = None;
     for parts in candidates {
-        let Some(stand) = state.settle(parts, &found.stand.noises) else { continue };
+        let Some(stand) = state.settle(&parts, &found.stand.noises) else { continue };
         for stand in [state.with_listed(&stand), Some(stand)].into_iter().flatten() {
             if !state.impossible(&stand.parts, &stand.estimate)
                 && state.works_widely(&stand)
@@ -203,11 +203,8 @@ fn law(
     let whitening = Whitening { system, whiteners, kind };
     let runs = 0..case.runs.len();
     // What a function does is taken away; all other causes are free beside the law.
-    let stand = if beside.iter().any(|part| part.spread.is_some()) {
-        state.settle(beside.to_vec(), noises)
-    } else {
-        None
-    };
+    let stand =
+        if beside.iter().any(|part| part.spread.is_some()) { state.settle(beside, noises) } else { None };
     let residual = match (&stand, beside.iter().find(|part| part.spread.is_some())) {
         (Some(stand), Some(part)) => {
             let effect = stand.effect(&state, part);
@@ -250,6 +247,8 @@ fn law(
 
 /// What may stand in a law: of the situation, never made of what is to be explained.
 fn variables(case: &Case) -> Vec<Variable> {
+    /// Name, unit, samples of every run where they are known.
+    type Offered = (&'static str, &'static str, Option<Vec<Vec<f64>>>);
     let channel = |name: &str| -> Option<Vec<Vec<f64>>> {
         case.runs.iter().map(|run| run.measured.trace.get(name).map(<[f64]>::to_vec)).collect()
     };
@@ -263,7 +262,7 @@ fn variables(case: &Case) -> Vec<Variable> {
         "x" => BLOCKS * block_s * median(&speeds).abs(),
         _ => 0.0,
     };
-    let offered: [(&str, &str, Option<Vec<Vec<f64>>>); 7] = [
+    let offered: [Offered; 7] = [
         ("v", "m/s", of(&|run| run.motion.value.clone())),
         ("x", "m", of(&|run| run.position_m.clone())),
         ("t", "s", of(&|run| run.measured.trace.time_s().to_vec())),
@@ -273,7 +272,7 @@ fn variables(case: &Case) -> Vec<Variable> {
         ("coasting", "1", channel("coasting")),
     ];
     let whole = |runs: &Vec<Vec<f64>>| runs.iter().flatten().all(|value| value.is_finite());
-    let variable = |(name, unit, runs): (&str, &str, Option<Vec<Vec<f64>>>)| {
+    let variable = |(name, unit, runs): Offered| {
         Some(Variable {
             name: name.to_owned(),
             unit: unit.to_owned(),

@@ -64,9 +64,7 @@ impl State<'_> {
             open.truncate(FINALISTS.max(close.min(2 * FINALISTS)));
         }
         let mut finalists: Vec<Part> = open.into_iter().map(|(_, part)| part).collect();
-        if stand.function_part().is_none() {
-            finalists.extend(self.functions(stand, &taken));
-        }
+        finalists.extend(self.functions(stand, &taken));
         // The noise belongs to what is explained: each finalist is judged with its own.
         let settled = |part: Part| {
             let mut parts = stand.parts.clone();
@@ -83,7 +81,7 @@ impl State<'_> {
     fn functions(&self, stand: &Stand, taken: &[&str]) -> Vec<Part> {
         let open = self.pool.trials.par_iter().filter(|trial| {
             let cause = self.cause(trial);
-            cause.is_function() && !taken.contains(&cause.id)
+            cause.is_function() && !taken.contains(&cause.id) && self.apart(trial, &stand.parts)
         });
         let part = |trial: &crate::trial::Trial| {
             let part = Part { trial: trial.clone(), spread: None };
@@ -106,8 +104,10 @@ impl State<'_> {
         let chunks = &self.system.chunks;
         let whitened = Whitened::new(chunks, &self.system.residual, &columns, &stand.noises)?;
         let profile = self.profile(&part.trial);
+        let without = self.without_functions(&whitened, &self.profiles(&stand.parts), self.fit)?;
         let evidence = |spread: &Spread| {
-            let reduced = profile.eliminate(&whitened, chunks, self.fit, spread)?;
+            let mut reduced = without.clone();
+            profile.take(&whitened, chunks, self.fit, spread, &mut reduced)?;
             Some(reduced.estimate(&places, &sd)?.log_evidence)
         };
         let lengths: &[f64] = match cause.form {

@@ -34,19 +34,19 @@ impl State<'_> {
         let places: Vec<usize> = (0..used.len()).collect();
         let chunks = &self.system.chunks;
         let whitened = Whitened::new(chunks, &self.system.residual, &columns, &stand.noises)?;
-        let function = parts.iter().find_map(|part| Some((self.profile(&part.trial), part.spread?)));
+        let profiles = self.profiles(parts);
         let of_run = |out: &usize| -> Option<f64> {
             let mut mask = self.fit.to_vec();
             mask[*out] = false;
-            let reduced = match &function {
-                None => whitened.reduced(chunks, &mask),
-                Some((profile, spread)) => profile.eliminate(&whitened, chunks, &mask, spread)?,
-            };
-            let beta = reduced.estimate(&places, &sd)?.beta;
-            let rows = function.as_ref().map(|(profile, spread)| {
-                let made = profile.function(&whitened, chunks, &mask, spread, &places, &beta);
-                profile.rows(self.system, &made)
-            });
+            let beta = self.without_functions(&whitened, &profiles, &mask)?.estimate(&places, &sd)?.beta;
+            let functions: Vec<Column> = profiles
+                .iter()
+                .flatten()
+                .map(|(profile, spread)| {
+                    let made = profile.function(&whitened, chunks, &mask, spread, &places, &beta);
+                    profile.rows(self.system, &made)
+                })
+                .collect();
             // What is known of the free parameters is known once, not once for every run.
             let bent: f64 =
                 beta.iter().zip(&sd).take(self.pool.nuisance).map(|(value, sd)| (value / sd).powi(2)).sum();
@@ -56,7 +56,7 @@ impl State<'_> {
                 for (column, value) in columns.iter().zip(beta.iter()) {
                     left -= &column[index] * *value;
                 }
-                if let Some(rows) = &rows {
+                for rows in &functions {
                     left -= &rows[index];
                 }
                 sum += whitened.whiteners.of(chunk).whiten(&left).norm_squared();

@@ -131,8 +131,22 @@ impl<'a> Profile<'a> {
         fit: &[bool],
         spread: &Spread,
     ) -> Option<Reduced> {
-        let groups = self.groups(spread);
         let mut reduced = whitened.reduced(chunks, fit);
+        self.take(whitened, chunks, fit, spread, &mut reduced)?;
+        Some(reduced)
+    }
+
+    /// Eliminates the function from products that were made already. Functions that are eliminated one after the other
+    /// must act on different rows.
+    pub fn take(
+        &self,
+        whitened: &Whitened,
+        chunks: &[Chunk],
+        fit: &[bool],
+        spread: &Spread,
+        reduced: &mut Reduced,
+    ) -> Option<()> {
+        let groups = self.groups(spread);
         let width = reduced.matrix.nrows();
         let of_group = |(number, group): (usize, &Group)| {
             let Some(parts) = self.parts(whitened, chunks, fit, number, group, spread) else {
@@ -152,7 +166,7 @@ impl<'a> Profile<'a> {
             reduced.scalar -= taken[(width, width)];
             reduced.log_determinant += log;
         }
-        Some(reduced)
+        Some(())
     }
 
     /// The function itself, once the other columns `used` have the values `beta`.
@@ -195,6 +209,8 @@ impl<'a> Profile<'a> {
         let width = whitened.width();
         let own: Vec<usize> = (0..chunks.len())
             .filter(|index| fit[chunks[*index].run] && self.group_of[chunks[*index].run] == number)
+            // Balances that the cause does not touch say nothing of it.
+            .filter(|index| self.signature[*index].iter().any(|value| *value != 0.0))
             .collect();
         // Whitened rows know all knots of their chunk, so the widest chunk makes the band.
         let reach =

@@ -115,7 +115,7 @@ pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]
     for _ in 0..MOST_CAUSES {
         let mut grown: Vec<Stand> = Vec::new();
         for (place, stand) in open.iter().enumerate() {
-            let reduced = state.reduced(&stand.noises, stand.function_part())?;
+            let reduced = state.reduced(&stand.noises, &stand.parts)?;
             if place == 0 {
                 needed = LEAST_GAIN.max(state.chance(stand, &reduced));
             }
@@ -205,7 +205,7 @@ impl State<'_> {
     /// Other sets that are as good: what they hold otherwise stands beside the cause that it is most like.
     fn sets_as_good(&self, found: &mut Found, others: &[Stand]) {
         let best = worth(&found.stand);
-        let Some(reduced) = self.reduced(&found.stand.noises, None) else { return };
+        let Some(reduced) = self.reduced(&found.stand.noises, &[]) else { return };
         let nuisance: Vec<usize> = (0..self.pool.nuisance).collect();
         for other in others.iter().filter(|other| worth(other) > best - TOLERANCE) {
             for part in &other.parts {
@@ -285,7 +285,8 @@ impl State<'_> {
         let mut effects = Vec::new();
         for (gain, part, rivals) in parts {
             let rows = best.effect(self, &part);
-            let function = part.spread.and(best.function.clone()).map(|function| {
+            let place = best.parts.iter().position(|own| own.trial.columns == part.trial.columns);
+            let function = place.and_then(|place| best.functions[place].clone()).map(|function| {
                 // The value that it has everywhere belongs to the function.
                 let even = best.position(part.trial.columns[0]);
                 function.raised(even.map_or(0.0, |position| best.estimate.beta[position]))
@@ -329,7 +330,7 @@ impl State<'_> {
     /// Causes that explain as much in the place of one.
     fn rivals(&self, best: &Stand, part: &Part, lesser: &Stand) -> Vec<Rival> {
         let id = self.id(&part.trial);
-        let Some(reduced) = self.reduced(&best.noises, lesser.function_part()) else { return Vec::new() };
+        let Some(reduced) = self.reduced(&best.noises, &lesser.parts) else { return Vec::new() };
         let at_best = Stand { noises: best.noises.clone(), ..lesser.clone() };
         let mut rivals: Vec<Rival> = Vec::new();
         for other in self.contest(&at_best, &reduced, &[]) {

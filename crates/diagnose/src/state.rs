@@ -33,8 +33,8 @@ pub struct Stand {
     pub score: f64,
     /// What it leaves of every row.
     pub left: Column,
-    /// The function, where there is one.
-    pub function: Option<Function>,
+    /// The function of each part that is one.
+    pub functions: Vec<Option<Function>>,
 }
 
 /// What all sets are judged by.
@@ -115,17 +115,49 @@ impl<'a> State<'a> {
         parts.iter().map(|part| choice(self.cause(&part.trial))).sum()
     }
 
-    /// All columns and the residual, multiplied at a noise, with a function eliminated.
-    pub fn reduced(&self, noises: &Noises, function: Option<&Part>) -> Option<Reduced> {
+    /// All columns and the residual, multiplied at a noise, with the functions of a set eliminated.
+    pub fn reduced(&self, noises: &Noises, parts: &[Part]) -> Option<Reduced> {
         let columns: Vec<&Column> = self.pool.columns.iter().collect();
         let whitened = Whitened::new(&self.system.chunks, &self.system.residual, &columns, noises)?;
-        match function.and_then(|part| Some((part, part.spread?))) {
-            None => Some(whitened.reduced(&self.system.chunks, self.fit)),
-            Some((part, spread)) => {
-                let profile = self.profile(&part.trial);
-                profile.eliminate(&whitened, &self.system.chunks, self.fit, &spread)
-            }
+        self.without_functions(&whitened, &self.profiles(parts), self.fit)
+    }
+
+    /// The functions of a set, part by part.
+    pub fn profiles(&self, parts: &[Part]) -> Vec<Option<(Profile<'a>, Spread)>> {
+        parts.iter().map(|part| Some((self.profile(&part.trial), part.spread?))).collect()
+    }
+
+    /// Products over the runs that are `fit`, without the functions.
+    pub fn without_functions(
+        &self,
+        whitened: &Whitened,
+        profiles: &[Option<(Profile, Spread)>],
+        fit: &[bool],
+    ) -> Option<Reduced> {
+        let chunks = &self.system.chunks;
+        let mut reduced = whitened.reduced(chunks, fit);
+        for (profile, spread) in profiles.iter().flatten() {
+            profile.take(whitened, chunks, fit, spread, &mut reduced)?;
         }
+        Some(reduced)
+    }
+
+    /// Whether a function has rows to itself beside those of a set.
+    pub fn apart(&self, trial: &Trial, parts: &[Part]) -> bool {
+        let touched = |trial: &Trial| -> Vec<bool> {
+            let signature = &self.pool.columns[trial.columns[0]];
+            let of = |number: usize| {
+                let own =
+                    self.system.chunks.iter().zip(signature).filter(|(chunk, _)| chunk.balance == number);
+                own.into_iter().any(|(_, values)| values.iter().any(|value| *value != 0.0))
+            };
+            (0..self.system.kinds.len()).map(of).collect()
+        };
+        let own = touched(trial);
+        let functions = parts.iter().filter(|part| part.spread.is_some());
+        !functions
+            .into_iter()
+            .any(|part| touched(&part.trial).iter().zip(&own).any(|(one, other)| *one && *other))
     }
 
     /// The function of a trial, on the rows.
@@ -161,33 +193,33 @@ impl<'a> State<'a> {
         let all_sd = self.sd();
         let sd: Vec<f64> = used.iter().map(|column| all_sd[*column]).collect();
         let places: Vec<usize> = (0..used.len()).collect();
-        let function = parts.iter().find_map(|part| Some((self.profile(&part.trial), part.spread?)));
+        let profiles = self.profiles(parts);
         let chunks = &self.system.chunks;
         let mut noises = start.clone();
         let mut best: Option<Stand> = None;
         for _ in 0..ROUNDS {
             let whitened = Whitened::new(chunks, &self.system.residual, &columns, &noises)?;
-            let reduced = match &function {
-                None => whitened.reduced(chunks, self.fit),
-                Some((profile, spread)) => profile.eliminate(&whitened, chunks, self.fit, spread)?,
-            };
+            let reduced = self.without_functions(&whitened, &profiles, self.fit)?;
             let estimate = reduced.estimate(&places, &sd)?;
             let mut left = self.left(&used, &estimate.beta);
-            let made = function.as_ref().map(|(profile, spread)| {
-                let beta = &estimate.beta;
-                let made = profile.function(&whitened, chunks, self.fit, spread, &places, beta);
-                for (left, rows) in left.iter_mut().zip(profile.rows(self.system, &made)) {
-                    *left -= rows;
-                }
-                made
-            });
+            let made: Vec<Option<Function>> = profiles
+                .iter()
+                .map(|one| {
+                    let (profile, spread) = one.as_ref()?;
+                    let made = profile.function(&whitened, chunks, self.fit, spread, &places, &estimate.beta);
+                    for (left, rows) in left.iter_mut().zip(profile.rows(self.system, &made)) {
+                        *left -= rows;
+                    }
+                    Some(made)
+                })
+                .collect();
             let next = self.system.noises(&left, self.fit);
             let score = estimate.log_evidence + self.heavy(&used, &estimate.beta) - self.choices(parts);
             if best.as_ref().is_some_and(|one| score <= one.score + SETTLED) {
                 break;
             }
             let parts = parts.to_vec();
-            best = Some(Stand { parts, used: used.clone(), noises, estimate, score, left, function: made });
+            best = Some(Stand { parts, used: used.clone(), noises, estimate, score, left, functions: made });
             noises = next;
         }
         best
@@ -206,11 +238,6 @@ impl<'a> State<'a> {
 }
 
 impl Stand {
-    /// The part that is a function.
-    pub fn function_part(&self) -> Option<&Part> {
-        self.parts.iter().find(|part| part.spread.is_some())
-    }
-
     /// Position among the columns in use.
     pub fn position(&self, column: usize) -> Option<usize> {
         self.used.iter().position(|used| *used == column)
@@ -226,7 +253,8 @@ impl Stand {
                 *row += values * value;
             }
         }
-        if let (Some(_), Some(function)) = (part.spread, &self.function) {
+        let place = self.parts.iter().position(|own| own.trial.columns == part.trial.columns);
+        if let Some(Some(function)) = place.and_then(|place| self.functions.get(place)) {
             let made = state.profile(&part.trial).rows(state.system, function);
             for (row, values) in rows.iter_mut().zip(made) {
                 *row += values;

@@ -34,7 +34,12 @@ pub fn unlisted(
     }
     let mut found = found;
     for (kind, target) in [(Kind::Motion, Target::Force), (Kind::Battery, Target::Power)] {
-        if system.has(kind) {
+        // A consumer that is switched with time may take any course: no law says more.
+        let any = found.stand.parts.iter().any(|part| {
+            let cause = &case.causes[part.trial.cause];
+            kind == Kind::Battery && cause.form == Form::OverTime && cause.balances.contains(&kind)
+        });
+        if system.has(kind) && !any {
             case.step("unlisted causes")?;
             found = beside(case, system, pool, found, (kind, target))?;
         }
@@ -124,7 +129,7 @@ impl State<'_> {
     fn is_listed(&self, stand: &Stand) -> bool {
         /// Two causes of this squared correlation are one to the data.
         const SAME: f64 = 0.97;
-        let Some(reduced) = self.reduced(&stand.noises, None) else { return true };
+        let Some(reduced) = self.reduced(&stand.noises, &[]) else { return true };
         let nuisance: Vec<usize> = (0..self.pool.nuisance).collect();
         let sd = self.sd();
         let laws = stand.parts.iter().filter(|part| self.cause(&part.trial).law.is_some());
@@ -141,7 +146,7 @@ impl State<'_> {
 
     /// A set with the listed cause beside that makes it likeliest; faults of sensors were looked for before.
     fn with_listed(&self, stand: &Stand) -> Option<Stand> {
-        let reduced = self.reduced(&stand.noises, stand.function_part())?;
+        let reduced = self.reduced(&stand.noises, &stand.parts)?;
         let faults = self.case.causes.iter().filter(|cause| cause.form == Form::Measured);
         let faults: Vec<&str> = faults.map(|cause| cause.id).collect();
         self.contest(stand, &reduced, &faults).into_iter().next().map(|one| one.stand)
@@ -205,13 +210,13 @@ fn law(
     // What a function does is taken away; all other causes are free beside the law.
     let stand =
         if beside.iter().any(|part| part.spread.is_some()) { state.settle(beside, noises) } else { None };
-    let residual = match (&stand, beside.iter().find(|part| part.spread.is_some())) {
-        (Some(stand), Some(part)) => {
-            let effect = stand.effect(&state, part);
-            system.residual.iter().zip(effect).map(|(residual, effect)| residual - effect).collect()
+    let mut residual = system.residual.clone();
+    for part in beside.iter().filter(|part| part.spread.is_some()) {
+        let Some(stand) = &stand else { continue };
+        for (residual, effect) in residual.iter_mut().zip(stand.effect(&state, part)) {
+            *residual -= effect;
         }
-        _ => system.residual.clone(),
-    };
+    }
     let residual: Vec<Vec<f64>> =
         runs.clone().map(|run| whitening.of(run, |index| residual[index].clone())).collect();
     let parametric: Vec<Part> = beside.iter().filter(|part| part.spread.is_none()).cloned().collect();

@@ -243,14 +243,18 @@ impl State<'_> {
     }
 
     /// The set without causes that do not help to predict a run from the others, and what those are. A function of time
-    /// belongs to its own run, and no other can show it.
+    /// belongs to its own run, one of position to its path, and no other can show it.
     fn without_unproven(&self, mut best: Stand) -> Option<(Stand, Vec<usize>)> {
         /// Growth of ln p of the runs predicted.
         const LEAST: f64 = 1.0;
         let mut out = Vec::new();
         loop {
             let Some(gains) = self.predicted(&best) else { return Some((best, out)) };
-            let timed = |place: &usize| self.cause(&best.parts[*place].trial).form == Form::OverTime;
+            let timed = |place: &usize| match self.cause(&best.parts[*place].trial).form {
+                Form::OverTime => true,
+                Form::OverPosition => !self.paths_shared(),
+                _ => false,
+            };
             let worst = (0..gains.len())
                 .filter(|place| !timed(place))
                 .min_by(|one, other| gains[*one].total_cmp(&gains[*other]));
@@ -259,6 +263,13 @@ impl State<'_> {
             out.push(parts.remove(worst).trial.cause);
             best = self.settle(&parts, &best.noises)?;
         }
+    }
+
+    /// Whether any two fitted runs drove the same path.
+    fn paths_shared(&self) -> bool {
+        let fitted = || (0..self.fit.len()).filter(|run| self.fit[*run]);
+        let path = |run: usize| self.case.runs[run].path;
+        fitted().any(|run| fitted().any(|other| other < run && path(other) == path(run)))
     }
 
     /// What was found, each cause with what it brings beside the others and what could stand in its place.

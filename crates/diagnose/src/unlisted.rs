@@ -64,12 +64,16 @@ fn beside(
         let Some(mut law) = law(case, system, pool, &start, &found.stand.noises, (kind, target))? else {
             continue;
         };
+        if is_map(&law) {
+            continue;
+        }
         let mut part = add(case, system, pool, &law, kind);
         // Once more with the noise that is left then: what was fitted to the whole mismatch hides slow laws.
         let state = State { case, system, pool, fit: &case.fit };
         let with = |part: &Part| start.iter().cloned().chain([part.clone()]).collect::<Vec<Part>>();
         if let Some(settled) = state.settle(&with(&part), &found.stand.noises)
             && let Some(better) = self::law(case, system, pool, &start, &settled.noises, (kind, target))?
+            && !is_map(&better)
         {
             law = better;
             part = add(case, system, pool, &law, kind);
@@ -97,6 +101,12 @@ fn beside(
         }
         _ => Ok(found),
     }
+}
+
+/// Whether a law only draws a map: several shapes along the path, which softer ground or slopes are by their definition.
+fn is_map(law: &Law) -> bool {
+    let others = headland_symbolic::known_variables().filter(|(name, _)| *name != "x");
+    law.terms > 1 && law.names("x") && !others.into_iter().any(|(name, _)| law.names(name))
 }
 
 /// How much better than what was found a law has to be.

@@ -60,13 +60,16 @@ pub fn prove(case: &Case, system: &System, refined: &Refined) -> Result<Proof, D
     let effects = refined
         .causes
         .iter()
-        .map(|cured| reconstruct(case, system, cured, refined))
+        .map(|cured| reconstruct(case, system, &cured.along(), refined))
         .collect::<Result<Vec<_>, _>>()?;
+    // What a run tells of itself is no proof on it: errors are those with what the fitted runs told.
+    let told = refined.causes.iter().map(|cured| reconstruct(case, system, cured, refined));
+    let told = told.collect::<Result<Vec<_>, _>>()?;
     let kind = told_by(system, refined);
     let (errors, noise) = if kind == Kind::Motion {
         (speeds(case, &runs, refined)?, speed_noise(case))
     } else {
-        (rows(case, system, &runs, refined, &effects, kind)?, f64::NAN)
+        (rows(case, system, &runs, refined, &told, kind)?, f64::NAN)
     };
     let over = |wanted: bool| {
         let chosen: Vec<&Errors> = errors

@@ -70,6 +70,15 @@ impl Cured {
         self.accepted.function.as_ref()
     }
 
+    /// The cause with its function as every run tells its own part of it.
+    pub fn along(&self) -> Self {
+        let mut own = self.clone();
+        if own.accepted.along.is_some() {
+            own.accepted.function.clone_from(&own.accepted.along);
+        }
+        own
+    }
+
     /// Its parameters without their intervals.
     pub fn values(&self) -> Vec<f64> {
         self.values.iter().map(|(value, _)| *value).collect()
@@ -159,6 +168,7 @@ pub fn spells(case: &Case, system: &System, events: &[Event], refined: &mut Refi
             by_chance: LEAST_GAIN,
             rivals: Vec::new(),
             function: None,
+            along: None,
             balance,
         },
         values: vec![(mean, [mean - HALF_95 * sd, mean + HALF_95 * sd])],

@@ -5,9 +5,9 @@ use crate::Case;
 use crate::balance::System;
 use crate::catalogue::{Cause, Class, Form};
 use crate::contest::Contest;
-use crate::gram::{Column, Estimate, Reduced};
+use crate::gram::{Column, Estimate, Reduced, Whitened};
 use crate::noise::{Noises, Shape};
-use crate::profile::Function;
+use crate::profile::{Function, Profile, Spread};
 use crate::sensors::petty;
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Trial};
@@ -27,6 +27,8 @@ pub struct Accepted {
     pub rivals: Vec<Rival>,
     /// The function, where it is one.
     pub function: Option<Function>,
+    /// The function as every run tells its own part of it, those held out among them: to be looked at, no proof.
+    pub along: Option<Function>,
     /// The balance in which it shows most.
     pub balance: usize,
 }
@@ -294,14 +296,17 @@ impl State<'_> {
         parts.sort_by(|one, other| other.0.total_cmp(&one.0));
         let mut accepted = Vec::new();
         let mut effects = Vec::new();
+        let along = self.functions_along(&best);
         for (gain, part, rivals) in parts {
             let rows = best.effect(self, &part);
             let place = best.parts.iter().position(|own| own.trial.columns == part.trial.columns);
-            let function = place.and_then(|place| best.functions[place].clone()).map(|function| {
-                // The value that it has everywhere belongs to the function.
-                let even = best.position(part.trial.columns[0]);
-                function.raised(even.map_or(0.0, |position| best.estimate.beta[position]))
-            });
+            // The value that it has everywhere belongs to the function.
+            let even =
+                best.position(part.trial.columns[0]).map_or(0.0, |position| best.estimate.beta[position]);
+            let of = |functions: &[Option<Function>]| {
+                place.and_then(|place| functions.get(place)?.clone()).map(|function| function.raised(even))
+            };
+            let function = of(&best.functions);
             let mut one = Accepted {
                 balance: self.balance_of(&rows, &best.noises),
                 trial: part.trial,
@@ -309,6 +314,7 @@ impl State<'_> {
                 by_chance: needed,
                 rivals,
                 function,
+                along: of(&along),
             };
             self.name_by_shape(&mut one);
             accepted.push(one);
@@ -328,6 +334,21 @@ impl State<'_> {
             first,
             needed,
         }
+    }
+
+    /// The functions of a set from all runs, with everything else as the fitted ones have it.
+    fn functions_along(&self, stand: &Stand) -> Vec<Option<Function>> {
+        let columns: Vec<&Column> = stand.used.iter().map(|column| &self.pool.columns[*column]).collect();
+        let places: Vec<usize> = (0..columns.len()).collect();
+        let chunks = &self.system.chunks;
+        let whitened = Whitened::new(chunks, &self.system.residual, &columns, &stand.noises);
+        let Some(whitened) = whitened else { return Vec::new() };
+        let all = vec![true; self.fit.len()];
+        let of = |one: &Option<(Profile, Spread)>| {
+            let (profile, spread) = one.as_ref()?;
+            Some(profile.function(&whitened, chunks, &all, spread, &places, &stand.estimate.beta))
+        };
+        self.profiles(&stand.parts).iter().map(of).collect()
     }
 
     /// The balance in which rows stand out most from its noise.

@@ -28,7 +28,7 @@ pub fn band(
     if !cured.events.is_empty() {
         return Ok(Some(of_spells(case, cured)));
     }
-    match cured.function() {
+    match cured.along().function() {
         Some(function) => Ok(Some(of_function(case, cured, function, effect))),
         None => of_parameters(case, system, cured, refined, effect),
     }

@@ -3,6 +3,7 @@
 use crate::DiagnoseError;
 use crate::balance::{Kind, System, block_s, kinds};
 use crate::catalogue::{Around, Cause, causes};
+use crate::own::own;
 use crate::recorded::{Recorded, recorded};
 use crate::said::{Said, said};
 use crate::search::Accepted;
@@ -107,8 +108,9 @@ impl<'a> Case<'a> {
         case.suppose()?;
         case.kinds = kinds(&case.runs, &case.nominal);
         let mut all = causes(&case.around(&model));
-        check_names(&all, registry, options)?;
         bound(&mut all, registry);
+        all.extend(own(&case)?);
+        check_names(&all, registry, options)?;
         all.retain(|cause| case.wanted(cause.id));
         case.causes = all;
         Ok(case)

@@ -2,6 +2,7 @@
 //! they usually are. Catalogue: the effects and artefacts that models of field vehicles commonly leave out.
 
 use crate::balance::Kind;
+use crate::own::Own;
 
 /// What a finding is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,6 +101,8 @@ pub struct Cause {
     pub experiment: &'static str,
     /// The equation, where it was found.
     pub law: Option<LawText>,
+    /// How it is written, where it is the user's.
+    pub own: Option<Own>,
 }
 
 /// An equation that was found, as scenarios write it.
@@ -171,6 +174,18 @@ impl Term {
         linear("amplitude", "1", 1.0)
     }
 
+    /// The factor of a formula that the author of a scenario wrote.
+    pub fn amount() -> Self {
+        linear("amount", "1", 1.0)
+    }
+
+    /// A parameter that a cause is in proportion to, of a usual size, where its effect lets it be.
+    pub fn of_size(name: &'static str, unit: &'static str, scale: f64, low: f64, high: f64) -> Self {
+        let term = linear(name, unit, scale);
+        let (low, high) = (term.low.max(low), term.high.min(high));
+        term.within(low, high)
+    }
+
     /// Held where it is.
     fn held(self, value: f64) -> Self {
         self.within(value, value)
@@ -203,6 +218,7 @@ fn cause(
         words,
         experiment,
         law: None,
+        own: None,
     }
 }
 
@@ -225,6 +241,9 @@ impl Cause {
 
     /// Its equation, in words of the catalogue or as it was found.
     pub fn equation_text(&self) -> String {
+        if let Some(own) = &self.own {
+            return own.equation.clone();
+        }
         match &self.law {
             Some(LawText { role: "resistance", text, .. }) => format!("F = {text}"),
             Some(LawText { text, .. }) => format!("P = {text}"),
@@ -234,7 +253,8 @@ impl Cause {
 
     /// Channels that it depends on.
     pub fn channels(&self) -> Vec<String> {
-        let listed = self.law.as_ref().map_or(self.depends_on, |law| &law.depends_on);
+        let own = self.own.as_ref().map_or(self.depends_on, |own| &own.depends_on);
+        let listed = self.law.as_ref().map_or(own, |law| &law.depends_on);
         listed.iter().map(|name| (*name).to_owned()).collect()
     }
 
@@ -266,6 +286,9 @@ impl Cause {
 
     /// The effect as a scenario writes it, with all parameters in the order of the terms.
     pub fn written(&self, values: &[f64]) -> String {
+        if let Some(own) = &self.own {
+            return own.written(values[0]);
+        }
         if let Some(law) = &self.law {
             let LawText { role, text, constants_text, .. } = law;
             return format!(

@@ -42,6 +42,16 @@ pub enum DiagnoseError {
         /// All that are known.
         known: Vec<&'static str>,
     },
+    /// A candidate of the scenario that cannot be tried.
+    #[error(
+        "candidate `{name}` cannot be tried: {why}; free is the amount of an `expression`, and of other effects the first number that is written, which the effect has to be in proportion to"
+    )]
+    Candidate {
+        /// The effect.
+        name: String,
+        /// Why not.
+        why: String,
+    },
     /// A trace does not come together: a bug.
     #[error(transparent)]
     Trace(#[from] headland_trace::TraceError),

@@ -26,6 +26,7 @@ mod locate;
 mod losses;
 mod map;
 mod noise;
+mod own;
 mod profile;
 mod prove;
 mod recorded;

@@ -159,6 +159,14 @@ pub fn corrected(runs: &[Recorded], id: &str, value: f64) -> Result<Vec<Recorded
         if let Some((name, samples)) = without(run, id, value) {
             changed.measured.trace = with_channel(&run.measured.trace, name, samples)?;
         }
+        if id == "latency" {
+            // What a late sensor would have said after the end nobody knows.
+            let time_s = run.measured.trace.time_s();
+            let (first, last) = (time_s[0], time_s[time_s.len() - 1]);
+            for (compared, time_s) in changed.measured.compared.iter_mut().zip(time_s) {
+                *compared &= (first..=last).contains(&(time_s + value));
+            }
+        }
         if id == "force_scale" {
             for sample in changed.force_n.iter_mut().flatten() {
                 *sample /= 1.0 + value;

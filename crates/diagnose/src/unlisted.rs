@@ -314,6 +314,7 @@ impl Cause {
             words: "a cause that nobody listed",
             experiment: "repeat the runs at other speeds, places and times than these, and see whether the equation holds",
             law: Some(law),
+            own: None,
         }
     }
 }

@@ -205,14 +205,16 @@ impl Document {
     }
 }
 
-/// Collects the paths of all fields of a name, `free` and `runs` left out: they speak of parameters elsewhere.
+/// Collects the paths of all fields of a name, `free` and `runs` left out: they speak of parameters elsewhere; and
+/// `candidates`, which do not act.
 fn paths_of(node: &Node, text: &str, name: &str, prefix: &str, found: &mut Vec<String>) {
     let join = |key: &str| if prefix.is_empty() { key.to_owned() } else { format!("{prefix}.{key}") };
     match &node.shape {
         Shape::Struct { fields, .. } => {
             for field in fields {
                 if prefix.is_empty()
-                    && ["free", "runs", "replay", "start", "cycle"].contains(&field.key.as_str())
+                    && ["free", "runs", "replay", "start", "cycle", "candidates"]
+                        .contains(&field.key.as_str())
                 {
                     continue;
                 }

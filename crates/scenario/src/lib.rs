@@ -5,6 +5,7 @@
 
 #![allow(clippy::result_large_err, reason = "a scenario is refused once, not in a loop")]
 
+mod candidate;
 mod document;
 mod error;
 mod fault;
@@ -16,6 +17,7 @@ mod scenario_tests;
 mod schema;
 mod tree;
 
+pub use candidate::{Candidate, CandidateField};
 pub use document::Document;
 pub use error::{Location, ScenarioError};
 pub use plugins::Remark;

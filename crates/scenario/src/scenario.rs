@@ -1,5 +1,6 @@
 //! A scenario that was read and checked, and the models that it stands for.
 
+use crate::candidate::{Candidate, candidates};
 use crate::document::Document;
 use crate::error::ScenarioError;
 use crate::fault;
@@ -23,6 +24,8 @@ pub struct Scenario {
     pub cycle: Option<Cycle>,
     /// How recordings drive it.
     pub replay: ReplaySettings,
+    /// Effects that a diagnosis tries beside those it knows.
+    pub candidates: Vec<Candidate>,
     /// Parameters that estimation may move.
     pub free: Vec<Free>,
     /// Its runs; empty where it is one run without a name.
@@ -112,6 +115,15 @@ impl Scenario {
         check_numbers(&document)?;
         let mut remarks = Vec::new();
         model(&document, &file, registry, &mut remarks)?;
+        let folder = folder(&document, &file);
+        build_all(
+            &document,
+            "candidates",
+            &registry.effects,
+            "headland plugins effect",
+            &folder,
+            &mut remarks,
+        )?;
         let cycle = match &file.cycle {
             Some(phases) => Some(cycle(&document, &file, phases)?),
             None => None,
@@ -124,6 +136,7 @@ impl Scenario {
             vehicle_name: file.vehicle.name,
             cycle,
             replay,
+            candidates: candidates(&document),
             free,
             runs,
             remarks,

@@ -187,3 +187,18 @@ fn text_that_is_no_ron_is_refused_at_its_first_fault() {
         Err(ScenarioError::File { .. })
     ));
 }
+
+#[test]
+fn candidates_are_checked_and_do_not_act() {
+    let with = |candidates: &str| {
+        GOOD.replacen("    simulation:", &format!("    candidates: [{candidates}],\n    simulation:"), 1)
+    };
+    let formula = "expression(resistance: \"k_n_s_m * v\", constants: {\"k_n_s_m\": 3.0})";
+    let scenario = read(&with(&format!("brake_drag(force_n: \"2 kN\"), {formula}"))).unwrap();
+    let [drag, law] = &scenario.candidates[..] else { panic!("{:?}", scenario.candidates) };
+    assert_eq!((drag.name.as_str(), drag.fields[0].number), ("brake_drag", Some(2000.0)));
+    assert_eq!(law.fields[0].text.as_deref(), Some("k_n_s_m * v"));
+    assert!(scenario.model(&headland_stock::registry()).unwrap().effects.is_empty());
+    let message = told(&read(&with("brake_drag(force_n: -1.0)")).unwrap_err(), "-1.0");
+    assert!(message.contains("force_n"), "{message}");
+}

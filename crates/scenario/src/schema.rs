@@ -27,6 +27,9 @@ pub struct ScenarioFile {
     #[allow(dead_code, reason = "read by the registry")]
     #[serde(default)]
     pub effects: Vec<Any>,
+    #[allow(dead_code, reason = "read by the registry")]
+    #[serde(default)]
+    pub candidates: Vec<Any>,
     #[serde(default)]
     pub free: Vec<FreeFile>,
     pub replay: Option<ReplayFile>,

@@ -109,12 +109,20 @@ pub fn refine(case: &Case, system: &System, pool: &Pool, found: &Found) -> Resul
     };
     let count = refined.free.len();
     for (own, estimate) in refined.free.iter_mut().zip(&fitted.estimates[..count]) {
-        (own.value, own.ci95) = (estimate.value, estimate.ci95);
+        (own.value, own.ci95) = (estimate.value, widest(estimate.value, estimate.ci95, own.ci95));
     }
     for ((place, term), estimate) in slots.iter().zip(&fitted.estimates[count..]) {
-        refined.causes[physics[*place]].values[*term] = (estimate.value, estimate.ci95);
+        let own = &mut refined.causes[physics[*place]].values[*term];
+        *own = (estimate.value, widest(estimate.value, estimate.ci95, own.1));
     }
     Ok(refined)
+}
+
+/// The interval about a value as wide as the wider of two: the one fit holds small faults of sensors where they are, the
+/// other lets them free but bends nothing.
+fn widest(value: f64, one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
+    let half = |ci: [f64; 2]| 0.5 * (ci[1] - ci[0]);
+    if half(one) >= half(other) { one } else { [value - half(other), value + half(other)] }
 }
 
 /// The linear estimate.

@@ -23,6 +23,36 @@ pub enum StudyError {
         /// Why.
         error: ReplayError,
     },
+    /// A run does not say how fast the vehicle was.
+    #[error(
+        "run `{run}`: {}; a model is driven along the recorded speed, so at least two samples of `speed_m_s` are needed; \
+         measured are: {}",
+        if *there { "channel `speed_m_s` has fewer than two values" } else { "there is no channel `speed_m_s`" },
+        measured.join(", ")
+    )]
+    NoSpeed {
+        /// The run.
+        run: String,
+        /// Whether there is such a channel at all.
+        there: bool,
+        /// Channels that were measured.
+        measured: Vec<String>,
+    },
+    /// Two samples are so far apart that they are not of one run.
+    #[error(
+        "run `{run}`: `time_s` jumps from {before_s} s to {after_s} s, and nothing drives longer than {most_s} s between \
+         two samples; is the clock of the first samples not set, or the unit of time wrong?"
+    )]
+    Jump {
+        /// The run.
+        run: String,
+        /// Time before [s].
+        before_s: f64,
+        /// Time after [s].
+        after_s: f64,
+        /// Longest time between two samples of one run [s].
+        most_s: f64,
+    },
     /// Nothing that was measured is predicted.
     #[error(
         "run `{run}` holds nothing that the model predicts when `{drive}` drives it; measured are: {}; it would take one of: {}",
@@ -96,6 +126,8 @@ pub struct Study<'a> {
     pub stop: fn() -> bool,
 }
 
+/// Samples farther apart are not of one run [s]: thirty days. A clock that was set on the way jumps by years.
+const LONGEST_JUMP_S: f64 = 30.0 * 86_400.0;
 /// Half width of the local fit of recorded speed, in samples, where the scenario does not say.
 const SMOOTHING_SAMPLES: f64 = 5.0;
 /// Recordings longer than this are driven forward in windows [s].
@@ -347,6 +379,27 @@ fn difference(run: &Measured, modelled: &Trace, name: &str) -> Vec<f64> {
     measured.iter().zip(modelled).zip(&run.compared).map(one).collect()
 }
 
+/// Refuses a run that no model can be driven along.
+fn refuse(run: &RecordedRun) -> Result<(), StudyError> {
+    let (trace, id) = (&run.trace, run.id.clone());
+    let jump = trace.time_s().windows(2).find(|pair| pair[1] - pair[0] > LONGEST_JUMP_S);
+    if let Some([before_s, after_s]) = jump {
+        return Err(StudyError::Jump {
+            run: id,
+            before_s: *before_s,
+            after_s: *after_s,
+            most_s: LONGEST_JUMP_S,
+        });
+    }
+    let speed = trace.get("speed_m_s");
+    let known = speed.map_or(0, |speed| speed.iter().filter(|value| value.is_finite()).count());
+    if known < 2 {
+        let measured = trace.channels().iter().map(|channel| channel.name.clone()).collect();
+        return Err(StudyError::NoSpeed { run: id, there: speed.is_some(), measured });
+    }
+    Ok(())
+}
+
 fn measured(
     scenario: &Scenario,
     model: &Model,
@@ -354,6 +407,7 @@ fn measured(
     length_m: f64,
     notes: &mut Vec<String>,
 ) -> Result<Measured, StudyError> {
+    refuse(run)?;
     let mut trace = run.trace.clone();
     derive(&mut trace, Origin::Measured)?;
     let settings = &scenario.replay;

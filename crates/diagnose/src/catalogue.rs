@@ -223,6 +223,34 @@ fn cause(
 }
 
 impl Cause {
+    /// Places of the begin and of the end of a window among the terms, where it has one.
+    fn window(&self) -> Option<(usize, usize)> {
+        let place = |name: &str| self.terms.iter().position(|term| term.name == name);
+        Some((place("from_s")?, place("to_s")?))
+    }
+
+    /// Whether a shape can be: what lasts has to begin before it ends.
+    pub fn possible(&self, shape: &[f64]) -> bool {
+        let Some((from, to)) = self.window() else { return true };
+        let place = |term: usize| self.terms[..term].iter().filter(|term| !term.linear).count();
+        match (shape.get(place(from)), shape.get(place(to))) {
+            (Some(from), Some(to)) => from < to,
+            _ => true,
+        }
+    }
+
+    /// Where a term has to stay so that a window, which has these values, begins before it ends.
+    pub fn within(&self, term: usize, values: &[f64]) -> (f64, f64) {
+        let Some((from, to)) = self.window() else { return (f64::NEG_INFINITY, f64::INFINITY) };
+        // Each has its own side of the middle.
+        let middle = 0.5 * (values[from] + values[to]);
+        match term {
+            term if term == from => (f64::NEG_INFINITY, middle),
+            term if term == to => (middle, f64::INFINITY),
+            _ => (f64::NEG_INFINITY, f64::INFINITY),
+        }
+    }
+
     fn shaped(mut self, shapes: Vec<Vec<f64>>) -> Self {
         self.shapes = shapes;
         self
@@ -783,4 +811,25 @@ fn sensors(all: &mut Vec<Cause>, around: &Around) {
         "slip of the driven wheels",
         "pull two loads at one speed",
     ));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_window_begins_before_it_ends() {
+        let term = |name, linear| Term { name, unit: "", scale: 1.0, linear, low: 0.0, high: f64::INFINITY };
+        let mut window = spell("drawbar_load");
+        window.terms = vec![term("force_n", true), term("from_s", false), term("to_s", false)];
+        assert!(
+            window.possible(&[2.0, 6.0]) && !window.possible(&[6.0, 2.0]) && !window.possible(&[2.0, 2.0])
+        );
+        let values = [300.0, 2.0, 6.0];
+        assert_eq!(window.within(0, &values), (f64::NEG_INFINITY, f64::INFINITY));
+        assert_eq!(window.within(1, &values).1, 4.0);
+        assert_eq!(window.within(2, &values).0, 4.0);
+        window.terms.truncate(1);
+        assert!(window.possible(&[]) && window.within(0, &[300.0]).0.is_infinite());
+    }
 }

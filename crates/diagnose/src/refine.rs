@@ -215,7 +215,9 @@ fn nonlinear(
                 value != 0.0 && term.low < term.high
             };
             if needed {
-                let (value, bounds, sd) = loosely(term, value);
+                let (value, (low, high), sd) = loosely(term, value);
+                let (from, to) = cured.cause.within(index, &cured.values());
+                let bounds = (low.max(from), high.min(to));
                 slots.push((place, index));
                 parameters.push(Parameter { name: term.name.to_owned(), value, sd: Some(sd), bounds });
             }

@@ -77,6 +77,9 @@ fn best(
         .collect();
     let noises = if accepted.is_some() { &found.noises.1 } else { &found.noises.0 };
     let mut likely = |shape: &[f64]| -> Result<f64, DiagnoseError> {
+        if !case.causes[cause].possible(shape) {
+            return Ok(f64::NEG_INFINITY);
+        }
         add_trial(case, system, pool, cause, shape)?;
         let state = State { case, system, pool, fit: &case.fit };
         let new = pool.trials[trials..]

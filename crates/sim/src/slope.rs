@@ -23,7 +23,8 @@ pub fn travelled(time_s: &[f64], speed_m_s: &[f64]) -> Vec<f64> {
 
 /// Fits a parabola to the samples within `half_width_s` of each sample, by least squares.
 ///
-/// The base may be uneven. With fewer than four samples in reach a straight line is fitted; a lone one has no slope.
+/// The base may be uneven. With fewer than four samples in reach a straight line is fitted; a lone one has no slope,
+/// and where there is none, or the series ended before, value and slope are NaN.
 /// Source: Savitzky and Golay, *Analytical Chemistry* 36 (1964) 1627, here for an uneven base.
 pub fn local_fit(time_s: &[f64], values: &[f64], half_width_s: f64) -> LocalFit {
     let mut fit =
@@ -38,7 +39,8 @@ pub fn local_fit(time_s: &[f64], values: &[f64], half_width_s: f64) -> LocalFit 
         }
         let low = first.min(index.saturating_sub(1));
         let high = end.max((index + 2).min(time_s.len()));
-        let (value, slope) = parabola(&time_s[low..high], &values[low..high], at);
+        let known = low.min(values.len())..high.min(values.len());
+        let (value, slope) = parabola(&time_s[low..high], &values[known], at);
         fit.value.push(value);
         fit.slope.push(slope);
     }
@@ -93,6 +95,15 @@ mod tests {
             assert!((fit.slope[index] - (t - 2.0)).abs() < 1e-8, "{t}");
             assert!((fit.value[index] - values[index]).abs() < 1e-8);
         }
+    }
+
+    #[test]
+    fn where_the_series_ended_before_or_is_unknown_nothing_is_known() {
+        let fit = local_fit(&[0.0, 1.0, 2.0, 3.0], &[1.0, 3.0], 0.1);
+        assert_eq!(fit.slope[..1], [2.0]);
+        assert!(fit.value[3].is_nan() && fit.slope[3].is_nan());
+        assert!(local_fit(&[0.0, 1.0], &[], 5.0).value.iter().all(|value| value.is_nan()));
+        assert!(local_fit(&[0.0, 1.0], &[f64::NAN; 2], 5.0).slope.iter().all(|slope| slope.is_nan()));
     }
 
     #[test]

@@ -40,7 +40,7 @@ pub enum StudyError {
     },
     /// Two samples are so far apart that they are not of one run.
     #[error(
-        "run `{run}`: `time_s` jumps from {before_s} s to {after_s} s, and nothing drives longer than {most_s} s between \
+        "run `{run}`: `time_s` jumps from {before_s:?} s to {after_s:?} s, and nothing drives longer than {most_s} s between \
          two samples; is the clock of the first samples not set, or the unit of time wrong?"
     )]
     Jump {

@@ -9,11 +9,13 @@ use crate::said::{Said, said};
 use crate::search::{Accepted, Found};
 use crate::trial::{Pool, Trial, for_run};
 use crate::{Case, DiagnoseError, System};
-use headland_calibrate::fit::{Fit, Parameter, Residuals, fit};
+use headland_calibrate::fit::{Estimate, Fit, Parameter, Residuals, fit};
 use headland_scenario::Scenario;
 
 /// Half the width of a 95 % interval, in standard deviations.
 pub const HALF_95: f64 = 1.96;
+/// Nothing is known worse than before; scatter between the runs may widen an interval beyond that, but not by this factor.
+const LOST: f64 = 3.0;
 
 /// A cause with its values.
 #[derive(Clone, Debug)]
@@ -107,6 +109,17 @@ pub fn refine(case: &Case, system: &System, pool: &Pool, found: &Found) -> Resul
         // Where the fit runs into what the effects refuse, the linear estimate stands.
         Err(_) => return Ok(refined),
     };
+    // What nothing measured tells apart a fit without limits puts anywhere: there the linear estimate stands as well, which
+    // knows what was known before.
+    let lost = |estimate: &Estimate, sd: f64| estimate.ci95[1] - estimate.ci95[0] > LOST * 2.0 * HALF_95 * sd;
+    let of_slots = slots.iter().map(|(place, term)| {
+        let own = &new[*place];
+        loosely(&own.cause.terms[*term], own.values[*term].0).2
+    });
+    let of_free = case.study.parameters.iter().map(|one| one.sd.unwrap_or(f64::INFINITY));
+    if fitted.estimates.iter().zip(of_free.chain(of_slots)).any(|(estimate, sd)| lost(estimate, sd)) {
+        return Ok(refined);
+    }
     let count = refined.free.len();
     for (own, estimate) in refined.free.iter_mut().zip(&fitted.estimates[..count]) {
         (own.value, own.ci95) = (estimate.value, widest(estimate.value, estimate.ci95, own.ci95));

@@ -80,26 +80,11 @@ fn flagged(drive: &Recorded) -> Option<&[f64]> {
 
 /// Vehicles that speed up while nothing drives them, by more than a slope could.
 pub fn coasting(case: &Case) -> Option<String> {
-    let mut runs: Vec<&str> = Vec::new();
-    let mut steepest = 0.0_f64;
-    for (drive, said) in case.runs.iter().zip(&case.nominal) {
-        let Some(flags) = flagged(drive) else { continue };
-        let time_s = drive.measured.trace.time_s();
-        let mut lasts_s = 0.0;
-        let mut slopes = Vec::new();
-        for i in 1..time_s.len() {
-            let gains = drive.motion.slope[i];
-            let slope = (gains + said.resistance_n[i] / said.effective_mass_kg[i]) / STANDARD_GRAVITY_M_S2;
-            if flags[i] >= 0.5 && gains > SPEEDS_UP_M_S2 && slope > STEEPEST {
-                lasts_s += time_s[i] - time_s[i - 1];
-                slopes.push(slope);
-            }
-        }
-        if lasts_s > LASTS_S {
-            runs.push(&drive.measured.id);
-            steepest = steepest.max(median(&slopes));
-        }
-    }
+    let free = |drive: &Recorded, index: usize| {
+        let coasts = flagged(drive).is_some_and(|flags| flags[index] >= 0.5);
+        coasts.then_some(0.0)
+    };
+    let (runs, steepest) = faster_than_driven(case, free);
     (!runs.is_empty()).then(|| {
         format!(
             "{} flagged as coasting while the vehicle speeds up in {}: beside the scenario's path this would take a \
@@ -109,6 +94,54 @@ pub fn coasting(case: &Case) -> Option<String> {
             100.0 * steepest
         )
     })
+}
+
+/// Vehicles that speed up by more than their recorded force and a slope could: a force that was not connected, or is in
+/// another unit.
+pub fn unforced(case: &Case) -> Option<String> {
+    let driven = |drive: &Recorded, index: usize| {
+        let coasts = flagged(drive).is_some_and(|flags| flags[index] >= 0.5);
+        drive.force_n.as_ref().filter(|_| !coasts).map(|force| force[index])
+    };
+    let (runs, steepest) = faster_than_driven(case, driven);
+    (2 * runs.len() > case.runs.len()).then(|| {
+        format!(
+            "The vehicle speeds up more than its recorded force can, in {}: beside the scenario's path this would take a \
+             slope of {:.0} % downhill. The force is not all that drives, or is not in the unit that it claims.",
+            listed(&runs),
+            100.0 * steepest
+        )
+    })
+}
+
+/// Runs in which the vehicle speeds up for a while though the `force` [N] of each sample and a slope could not make it,
+/// and the steepest slope that it would take.
+fn faster_than_driven<'a>(
+    case: &'a Case<'_>,
+    force: impl Fn(&Recorded, usize) -> Option<f64>,
+) -> (Vec<&'a str>, f64) {
+    let mut runs: Vec<&str> = Vec::new();
+    let mut steepest = 0.0_f64;
+    for (drive, said) in case.runs.iter().zip(&case.nominal) {
+        let time_s = drive.measured.trace.time_s();
+        let mut lasts_s = 0.0;
+        let mut slopes = Vec::new();
+        for i in 1..time_s.len() {
+            let Some(force_n) = force(drive, i) else { continue };
+            let gains = drive.motion.slope[i];
+            let slope = (gains + (said.resistance_n[i] - force_n) / said.effective_mass_kg[i])
+                / STANDARD_GRAVITY_M_S2;
+            if gains > SPEEDS_UP_M_S2 && slope > STEEPEST {
+                lasts_s += time_s[i] - time_s[i - 1];
+                slopes.push(slope);
+            }
+        }
+        if lasts_s > LASTS_S {
+            runs.push(&drive.measured.id);
+            steepest = steepest.max(median(&slopes));
+        }
+    }
+    (runs, steepest)
 }
 
 /// Vehicles that speed up coasting at the same place both ways: no slope and no wind does that.

@@ -11,7 +11,7 @@ mod channels;
 use crate::balance::System;
 use crate::refine::Refined;
 use crate::words::capital;
-use channels::{coasting, coasting_both_ways, forces, positions, powers};
+use channels::{coasting, coasting_both_ways, forces, positions, powers, unforced};
 use headland_calibrate::statistics::{quantile_of_sorted, sorted};
 
 /// A channel that varies by less than this share of its median does not vary.
@@ -35,6 +35,7 @@ pub fn statements(case: &Case, sound: &[Vec<bool>]) -> Vec<String> {
     all.extend(coasting(case));
     all.extend(coasting_both_ways(case));
     all.extend(forces(case, system));
+    all.extend(unforced(case));
     all.extend(powers(case));
     if all.is_empty() {
         all.extend(steady(case, system));

@@ -38,13 +38,20 @@ fn a_run_without_speed_is_refused_with_its_name_and_the_channel() {
 fn a_clock_that_jumps_by_years_is_refused_with_both_times() {
     let told =
         error(&timed(&recorded(0.07, ""), |index, at| if index == 0 { at } else { 1.0e300 * (1.0 + at) }));
-    assert!(told.contains("run `r0`: `time_s` jumps from 0 s to"), "{told}");
+    assert!(told.contains("run `r0`: `time_s` jumps from 0.0 s to 1."), "{told}");
+}
+
+#[test]
+fn a_vehicle_that_speeds_up_without_its_force_contradicts_it() {
+    let told = super::refused(&changed(&recorded(0.07, ""), "tractive_force_n", |_, _, _| 0.0));
+    assert!(told.contains("more than its recorded force can"), "{told}");
 }
 
 #[test]
 fn what_is_lost_or_held_makes_no_cause() {
     type Hurt = (&'static str, fn(&Recording) -> Recording);
-    let hurts: [Hurt; 5] = [
+    let hurts: [Hurt; 6] = [
+        ("a force in kilonewtons", |sound| changed(sound, "tractive_force_n", |value, _, _| 1e-3 * value)),
         ("a stretch without speed", |sound| {
             changed(sound, "speed_m_s", |value, trace, index| {
                 if (trace.len() / 3..trace.len() / 2).contains(&index) { f64::NAN } else { value }

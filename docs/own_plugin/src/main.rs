@@ -1,7 +1,10 @@
-//! `headland` with two models more: every command knows them, every scenario can name them.
+//! `headland` with three models more: every command knows them, every scenario can name them.
 
+#[cfg(test)]
+mod diagnosed;
 mod snow;
 mod standing_crop;
+mod washboard;
 
 use headland_plugin::Registry;
 use std::process::ExitCode;
@@ -15,5 +18,6 @@ fn registry() -> Registry {
     let mut registry = headland_stock::registry();
     registry.soil::<snow::Snow>();
     registry.effect::<standing_crop::StandingCrop>();
+    registry.effect::<washboard::Washboard>();
     registry
 }

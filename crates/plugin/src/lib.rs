@@ -14,6 +14,7 @@ mod soil;
 mod state;
 mod task;
 mod terrain;
+mod tyre;
 
 pub use card::{Bound, Card, Parameter, parameter};
 pub use driveline::{Delivery, Demand, Driveline, MAX_LOSSES, Readings};
@@ -21,10 +22,11 @@ pub use effect::{Action, Effect};
 pub use family::{BuildError, Entry, Family, closest};
 pub use registry::{Kind, Registry};
 pub use situation::{Air, Situation};
-pub use soil::{Contact, Soil};
+pub use soil::{Contact, Footing, Soil, WheelContact};
 pub use state::State;
 pub use task::{Load, Task};
 pub use terrain::{Place, Terrain};
+pub use tyre::Tyre;
 
 use serde::de::DeserializeOwned;
 use std::path::Path;

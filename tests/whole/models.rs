@@ -36,6 +36,7 @@ fn title(kind: Kind) -> &'static str {
         Kind::Soil => "Soils",
         Kind::Terrain => "Terrains",
         Kind::Driveline => "Drivelines",
+        Kind::Management => "Managements",
         Kind::Task => "Tasks",
         Kind::Effect => "Effects",
     }

@@ -1,6 +1,7 @@
 //! From the store of energy to the wheels.
 
-use crate::State;
+use crate::management::{Consequence, Management, Share};
+use crate::{Refusal, State};
 use std::fmt::Debug;
 
 /// The most named losses that one driveline may have.
@@ -23,6 +24,8 @@ pub struct Demand {
     pub engine_friction_n_m: f64,
     /// Resistance of the battery, beside its own [Ω]; nothing to a driveline without one.
     pub battery_resistance_ohm: f64,
+    /// Speed at which the driver keeps the engine by hand, as for the power take-off [rad/s]; 0 where the driveline chooses.
+    pub engine_speed_rad_s: f64,
 }
 
 /// What a driveline shows on its instruments; NaN for those that it does not have.
@@ -69,14 +72,15 @@ impl Readings {
 
 /// What a driveline gives.
 ///
-/// Its powers balance: `source_power_w = force_n · speed + Σ losses_w + auxiliary + shaft power`.
+/// Its powers balance: `source_power_w = force_n · speed + Σ losses_w + auxiliary + shaft power`. Where there are two stores
+/// the source is the fuel, and what the other one gains is an account among the losses, negative where it gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Delivery {
     /// Force at the wheels, forward [N]; it may fall short of what was asked.
     pub force_n: f64,
     /// Power drawn from the store: lower heating value of the fuel, or open-circuit power of the battery [W].
     pub source_power_w: f64,
-    /// Power of each loss that [`Driveline::losses`] names [W].
+    /// Power of each account that [`Driveline::losses`] names [W].
     pub losses_w: [f64; MAX_LOSSES],
     /// What its instruments show.
     pub readings: Readings,
@@ -106,6 +110,44 @@ pub trait Driveline: Debug + Send + Sync {
 
     /// Answers a demand, and says how its states change (`rates`, one for each state, per second).
     fn deliver(&self, demand: &Demand, states: &[f64], rates: &mut [f64]) -> Delivery;
+
+    /// Changes what it decides rather than what flows: a gear, an engine that stops, the sharing of a power. Asked once
+    /// between two steps, and perhaps again at the same instant; during a step nothing is decided. Says whether it
+    /// changed any of its states.
+    fn decide(&self, demand: &Demand, states: &mut [f64]) -> bool {
+        let _ = (demand, states);
+        false
+    }
+
+    /// Why it gives less than `demand` asks and will not give it later either, as with an empty battery: the run ends.
+    /// Asked only where the delivered force falls short. `None` where what it gives is all that it is made for.
+    fn exhausted(&self, demand: &Demand, states: &[f64]) -> Option<String> {
+        let _ = (demand, states);
+        None
+    }
+
+    /// Whether two stores have to be managed.
+    fn needs_management(&self) -> bool {
+        false
+    }
+
+    /// Takes the plugin that shares power between its stores.
+    ///
+    /// # Errors
+    /// [`Refusal`] where there is nothing to share.
+    fn adopt(&mut self, management: Box<dyn Management>) -> Result<(), Refusal> {
+        Err(Refusal {
+            parameter: "management".to_owned(),
+            found: format!("{management:?}"),
+            expected: "none: this driveline has no two stores to share power between".to_owned(),
+        })
+    }
+
+    /// What sharing the power so would take from its stores; `None` where there is nothing to share.
+    fn weigh(&self, demand: &Demand, states: &[f64], share: Share) -> Option<Consequence> {
+        let _ = (demand, states, share);
+        None
+    }
 
     /// Force at the wheels [N] that a recorded torque of its engine or motor [N m] makes; `None` where it cannot tell.
     fn force_of_torque_n(&self, torque_n_m: f64, speed_m_s: f64) -> Option<f64> {

@@ -1,5 +1,5 @@
-//! The extension points of Headland: what a soil, a terrain, a driveline, a task and an effect have to answer, how each
-//! describes itself, and the registry that knows them by name.
+//! The extension points of Headland: what a soil, a terrain, a driveline, its management, a task and an effect have to
+//! answer, how each describes itself, and the registry that knows them by name.
 //!
 //! A model is a pure function of its arguments: it sees no clock, no file while running, and keeps no history. What it
 //! remembers it declares as states, which the simulation integrates.
@@ -8,6 +8,7 @@ mod card;
 mod driveline;
 mod effect;
 mod family;
+mod management;
 mod registry;
 mod situation;
 mod soil;
@@ -20,6 +21,7 @@ pub use card::{Bound, Card, Parameter, parameter};
 pub use driveline::{Delivery, Demand, Driveline, MAX_LOSSES, Readings};
 pub use effect::{Action, Effect};
 pub use family::{BuildError, Entry, Family, closest};
+pub use management::{Consequence, Management, Outlook, Share, Stores};
 pub use registry::{Kind, Registry};
 pub use situation::{Air, Situation};
 pub use soil::{Contact, Footing, Soil, WheelContact};

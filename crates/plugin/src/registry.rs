@@ -1,7 +1,7 @@
 //! Every model that a program knows.
 
 use crate::family::read;
-use crate::{Card, Driveline, Effect, Family, Plugin, Soil, Task, Terrain};
+use crate::{Card, Driveline, Effect, Family, Management, Plugin, Soil, Task, Terrain};
 
 /// The kinds of plugin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,6 +12,8 @@ pub enum Kind {
     Terrain,
     /// Engine, motors, gears and stores.
     Driveline,
+    /// Sharing of power between two stores.
+    Management,
     /// Work.
     Task,
     /// Added physics.
@@ -20,7 +22,8 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds, in the order in which they are listed.
-    pub const ALL: [Self; 5] = [Self::Soil, Self::Terrain, Self::Driveline, Self::Task, Self::Effect];
+    pub const ALL: [Self; 6] =
+        [Self::Soil, Self::Terrain, Self::Driveline, Self::Management, Self::Task, Self::Effect];
 
     /// As it is written on the command line.
     pub fn name(self) -> &'static str {
@@ -28,6 +31,7 @@ impl Kind {
             Self::Soil => "soil",
             Self::Terrain => "terrain",
             Self::Driveline => "driveline",
+            Self::Management => "management",
             Self::Task => "task",
             Self::Effect => "effect",
         }
@@ -42,6 +46,8 @@ pub struct Registry {
     pub terrains: Family<dyn Terrain>,
     /// Drivelines.
     pub drivelines: Family<dyn Driveline>,
+    /// Managements.
+    pub managements: Family<dyn Management>,
     /// Tasks.
     pub tasks: Family<dyn Task>,
     /// Effects.
@@ -61,6 +67,7 @@ impl Registry {
             soils: Family::new("soil model"),
             terrains: Family::new("terrain"),
             drivelines: Family::new("driveline"),
+            managements: Family::new("management"),
             tasks: Family::new("task"),
             effects: Family::new("effect"),
         }
@@ -79,6 +86,11 @@ impl Registry {
     /// Registers a driveline.
     pub fn driveline<P: Plugin + Driveline>(&mut self) {
         self.drivelines.insert(P::CARD, |text, folder| Ok(Box::new(read::<P>(text, folder)?)));
+    }
+
+    /// Registers a management.
+    pub fn management<P: Plugin + Management>(&mut self) {
+        self.managements.insert(P::CARD, |text, folder| Ok(Box::new(read::<P>(text, folder)?)));
     }
 
     /// Registers a task.
@@ -100,6 +112,7 @@ impl Registry {
             Kind::Soil => of(&self.soils),
             Kind::Terrain => of(&self.terrains),
             Kind::Driveline => of(&self.drivelines),
+            Kind::Management => of(&self.managements),
             Kind::Task => of(&self.tasks),
             Kind::Effect => of(&self.effects),
         }

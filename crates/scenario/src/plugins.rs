@@ -61,8 +61,7 @@ pub fn build<T: ?Sized>(
             })
         }
         Err(BuildError::Refused { refusal, .. }) => {
-            let head = refusal.parameter.split(['.', '[']).next().unwrap_or("");
-            let at = node.field(head).map_or(node.span.start, |field| field.value.span.start);
+            let at = nearest(node, &refusal.parameter).span.start;
             Err(ScenarioError::Value {
                 name: refusal.parameter,
                 found: refusal.found,
@@ -71,6 +70,18 @@ pub fn build<T: ?Sized>(
             })
         }
     }
+}
+
+/// The piece at a dotted path, or as near to it as the text goes: what is refused may stand in a file, or nowhere.
+fn nearest<'a>(node: &'a Node, path: &str) -> &'a Node {
+    let mut nearest = node;
+    for part in path.split(['.', '[']) {
+        match nearest.field(part) {
+            Some(field) => nearest = &field.value,
+            None => break,
+        }
+    }
+    nearest
 }
 
 /// Builds a list of plugins; a second one of the same name is called `name_2`.
@@ -102,8 +113,8 @@ fn check(
     remarks: &mut Vec<Remark>,
 ) -> Result<(), ScenarioError> {
     for parameter in card.parameters {
-        let Some(field) = node.field(parameter.name) else { continue };
-        for (value, at) in numbers(document, &field.value) {
+        let Some(field) = node.find(document.text(), parameter.name) else { continue };
+        for (value, at) in numbers(document, field) {
             bounded(document, parameter.name, value, parameter.bound, at)?;
             if let Some((low, high)) = parameter.plausible
                 && !(low..=high).contains(&value)

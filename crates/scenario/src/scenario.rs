@@ -305,7 +305,18 @@ fn model(
     let driveline =
         document.find("vehicle.driveline").ok_or_else(|| missing("vehicle", "vehicle", "driveline"))?;
     let more = "headland plugins driveline";
-    let (_, driveline) = build(document, driveline, &registry.drivelines, more, &folder, remarks)?;
+    let (_, mut driveline) = build(document, driveline, &registry.drivelines, more, &folder, remarks)?;
+    match document.find("vehicle.management") {
+        Some(node) => {
+            let more = "headland plugins management";
+            let (name, management) = build(document, node, &registry.managements, more, &folder, remarks)?;
+            driveline
+                .adopt(management)
+                .map_err(|refusal| misfit("management", &name, &refusal.expected, "vehicle.management"))?;
+        }
+        None if driveline.needs_management() => return Err(missing("vehicle", "vehicle", "management")),
+        None => {}
+    }
     let tasks = build_all(document, "tasks", &registry.tasks, "headland plugins task", &folder, remarks)?;
     let effects =
         build_all(document, "effects", &registry.effects, "headland plugins effect", &folder, remarks)?;

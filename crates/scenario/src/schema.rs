@@ -49,6 +49,8 @@ pub struct VehicleFile {
     pub road_load: Option<RoadLoadFile>,
     #[allow(dead_code, reason = "read by the registry")]
     pub driveline: Any,
+    #[allow(dead_code, reason = "read by the registry")]
+    pub management: Option<Any>,
 }
 
 #[derive(Debug, Deserialize)]

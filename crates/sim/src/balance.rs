@@ -51,6 +51,8 @@ pub(crate) struct Instant {
     pub acceleration_m_s2: f64,
     pub situation: Situation,
     pub effective_mass_kg: f64,
+    /// What was asked of the driveline.
+    pub demand: Demand,
     pub delivery: Delivery,
     pub soil_n: f64,
     pub air_n: f64,
@@ -141,6 +143,7 @@ impl Model {
             shaft_power_w,
             engine_friction_n_m: sums.engine_friction_n_m,
             battery_resistance_ohm: sums.battery_resistance_ohm,
+            engine_speed_rad_s: 0.0,
         };
         let lost_n = |force_n: f64| sums.loss_share * force_n.abs();
         let wanted_n = match command {
@@ -203,6 +206,7 @@ impl Model {
             acceleration_m_s2,
             situation,
             effective_mass_kg,
+            demand,
             delivery,
             soil_n: ground_n,
             air_n,

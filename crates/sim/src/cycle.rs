@@ -210,7 +210,7 @@ impl<'a> Running<'a> {
             if left_s <= 0.0 || event(machine.time_s, machine.position_m(), machine.speed_m_s()) <= 0.0 {
                 return Ok(());
             }
-            if let Some(reason) = hopeless(machine, &instant) {
+            if let Some(reason) = hopeless(machine, &instant).or_else(|| machine.exhausted(&instant)) {
                 return Err(reason);
             }
             if machine.steps >= MOST_STEPS {

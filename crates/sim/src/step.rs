@@ -97,8 +97,40 @@ impl<'a> Machine<'a> {
         &self.scratch.actions
     }
 
-    /// The balance where the machine stands. The direction of a machine at rest is what the forces make of it.
+    /// The balance where the machine stands, after the driveline has decided what it decides between two steps. The
+    /// direction of a machine at rest is what the forces make of it.
     pub fn instant(&mut self, control: &impl Control) -> Instant {
+        let mut instant = self.as_decided(control);
+        if self.decide(&instant) {
+            instant = self.as_decided(control);
+        }
+        instant
+    }
+
+    /// Why the driveline gives less than is asked for good.
+    pub fn exhausted(&self, instant: &Instant) -> Option<String> {
+        let (asked, given) = (instant.demand.force_n, instant.delivery.force_n);
+        // Braking that the driveline does not do is done by the brakes.
+        let short = given != asked && asked * self.y[SPEED] >= 0.0;
+        if !short {
+            return None;
+        }
+        let own = self.layout.driveline.clone();
+        self.model.driveline.exhausted(&instant.demand, &self.states()[own])
+    }
+
+    /// Lets the driveline decide; says whether anything changed. Who remembers nothing decides nothing.
+    fn decide(&mut self, instant: &Instant) -> bool {
+        let own = &self.layout.driveline;
+        !own.is_empty()
+            && self
+                .model
+                .driveline
+                .decide(&instant.demand, &mut self.y[FIRST_STATE + own.start..FIRST_STATE + own.end])
+    }
+
+    /// The balance where the machine stands.
+    fn as_decided(&mut self, control: &impl Control) -> Instant {
         let y = std::mem::take(&mut self.y);
         let mut slope = std::mem::take(&mut self.slopes[0]);
         let direction = sign(y[SPEED]);
@@ -212,14 +244,15 @@ impl<'a> Machine<'a> {
         }
         self.time_s = time_s;
         self.set_motion(position_m, speed_m_s);
-        let instant = self.instant(control);
+        let instant = self.as_decided(control);
         let rates = before.iter().zip(&self.slopes[0]);
         for ((value, start), (before, after)) in
             self.y.iter_mut().zip(&self.start).zip(rates).skip(FIRST_STATE)
         {
             *value = start + 0.5 * step_s * (before + after);
         }
-        instant
+        // The energies of the step are booked; only now may anything be decided.
+        if self.decide(&instant) { self.as_decided(control) } else { instant }
     }
 
     /// Rates of change at the last instant: speed, acceleration, rates of the states, powers.

@@ -2,12 +2,13 @@
 
 use headland_plugin::Registry;
 
-/// Every soil, terrain, driveline, task and effect that is built in.
+/// Every soil, terrain, driveline, management, task and effect that is built in.
 pub fn registry() -> Registry {
     let mut registry = Registry::new();
     headland_soil::register(&mut registry);
     headland_terrain::register(&mut registry);
     headland_driveline::register(&mut registry);
+    headland_management::register(&mut registry);
     headland_task::register(&mut registry);
     headland_effect::register(&mut registry);
     registry

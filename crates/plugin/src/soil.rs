@@ -41,7 +41,8 @@ pub struct WheelContact<'a> {
 /// traction at its rolling radius.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Footing {
-    /// Torque at the wheel per rolling radius [N], positive where it drives. It grows with slip.
+    /// Torque at the wheel per rolling radius [N], positive where it drives. It grows with slip until the ground has no
+    /// more to give.
     pub gross_traction_n: f64,
     /// Motion resistance [N], 0 or more.
     pub motion_resistance_n: f64,

@@ -26,7 +26,7 @@ pub use registry::{Kind, Registry};
 pub use situation::{Air, Situation};
 pub use soil::{Contact, Footing, Soil, WheelContact};
 pub use state::State;
-pub use task::{Load, Task};
+pub use task::{Load, Mode, Task};
 pub use terrain::{Place, Terrain};
 pub use tyre::Tyre;
 

@@ -40,4 +40,15 @@ pub trait Terrain: Debug + Send + Sync {
     fn extent_m(&self) -> Option<(f64, f64)> {
         None
     }
+
+    /// Names of the marks that stand along the path, as `turn` where a lane ends.
+    fn marks(&self) -> Vec<&str> {
+        Vec::new()
+    }
+
+    /// Where the next mark of this name stands beyond a position, both along the path [m]; `None` where there is none.
+    fn next_mark_m(&self, name: &str, position_m: f64) -> Option<f64> {
+        let _ = (name, position_m);
+        None
+    }
 }

@@ -16,7 +16,7 @@ use crate::ledger::{
 };
 use crate::model::Layout;
 use crate::{Model, Resistance};
-use headland_plugin::{Action, Air, Contact, Delivery, Demand, Situation};
+use headland_plugin::{Action, Air, Contact, Delivery, Demand, Mode, Situation};
 
 /// What the driver, or the recording, wants at this instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +27,8 @@ pub(crate) enum Command {
     Recorded(f64),
     /// This acceleration [m/s²], as far as the driveline can; brakes help.
     Accelerate(f64),
+    /// The force that would accelerate the mass so [m/s²] if nothing resisted; brakes help.
+    Push(f64),
 }
 
 /// What a recording knows better than the model.
@@ -41,6 +43,10 @@ pub(crate) struct Given {
     pub auxiliary_power_w: Option<f64>,
     pub drawbar_force_n: Option<f64>,
     pub braking: bool,
+    /// Speed at which the driver keeps the engine [rad/s]; 0 where the driveline chooses.
+    pub engine_speed_rad_s: f64,
+    /// How fast what the driver remembers changes, per second.
+    pub driver_rate: f64,
     /// Whether the motion is recorded: then it was driven, whatever effects would have allowed.
     pub driven: bool,
 }
@@ -59,6 +65,8 @@ pub(crate) struct Instant {
     pub slope_n: f64,
     pub brake_n: f64,
     pub drawbar_n: f64,
+    /// Force of the tasks, forward, whether the vehicle moves or not.
+    pub pushed_n: f64,
     pub auxiliary_power_w: f64,
     pub pto_power_w: f64,
     pub hydraulic_power_w: f64,
@@ -97,6 +105,8 @@ pub(crate) struct Point {
 #[derive(Debug)]
 pub(crate) struct Scratch {
     pub actions: Vec<Action>,
+    /// What each task is told to do.
+    pub modes: Vec<Mode>,
 }
 
 impl Model {
@@ -128,9 +138,9 @@ impl Model {
         let (ground_n, air_n) = self.ground_and_air_n(&situation, rolling_speed);
         // An effect may say that the ground resists less, and never that it drives.
         let ground_n = ground_n.max(-(sums.resistance_n + sums.drawbar_n));
-        let slope_n = weight_n * place.sin_slope;
-        let effective_mass_kg = situation.mass_kg + sums.rotating_kg;
-        let free_n = air_n - slope_n + sums.pushed_n;
+        let slope_n = (weight_n + sums.towed_kg * self.gravity_m_s2) * place.sin_slope;
+        let effective_mass_kg = situation.mass_kg + sums.rotating_kg + sums.towed_kg;
+        let free_n = air_n - slope_n + sums.pushed_n + sums.task_push_n;
         let held_n = ground_n + sums.resistance_n + sums.drawbar_n;
 
         let range = layout.driveline.clone();
@@ -143,7 +153,7 @@ impl Model {
             shaft_power_w,
             engine_friction_n_m: sums.engine_friction_n_m,
             battery_resistance_ohm: sums.battery_resistance_ohm,
-            engine_speed_rad_s: 0.0,
+            engine_speed_rad_s: given.engine_speed_rad_s,
         };
         let lost_n = |force_n: f64| sums.loss_share * force_n.abs();
         let wanted_n = match command {
@@ -156,6 +166,7 @@ impl Model {
                 // F − way ε |F| = ground.
                 ground_n / (1.0 - sums.loss_share * (way * ground_n).signum())
             }
+            Command::Push(wanted) => effective_mass_kg * wanted,
         };
         situation.tractive_force_n = wanted_n;
         demand.force_n = self.govern(&situation, command, given, layout, states, rates);
@@ -179,12 +190,12 @@ impl Model {
         }
         situation.tractive_force_n = delivery.force_n;
         let brake_n = match command {
-            Command::Accelerate(_) if direction != 0.0 => {
+            Command::Accelerate(_) | Command::Push(_) if direction != 0.0 => {
                 let short_n = (delivery.force_n - wanted_n) * direction;
                 (short_n - lost_n(delivery.force_n) + lost_n(wanted_n)).max(0.0)
             }
             // A driver who wants to stand still keeps a foot on the brake.
-            Command::Accelerate(wanted) if wanted <= 0.0 => f64::INFINITY,
+            Command::Accelerate(wanted) | Command::Push(wanted) if wanted <= 0.0 => f64::INFINITY,
             _ => 0.0,
         };
 
@@ -213,6 +224,7 @@ impl Model {
             slope_n,
             brake_n,
             drawbar_n: sums.drawbar_n,
+            pushed_n: sums.task_push_n,
             auxiliary_power_w: sums.auxiliary_power_w,
             pto_power_w: sums.pto_power_w,
             hydraulic_power_w: sums.hydraulic_power_w,
@@ -269,7 +281,10 @@ impl Model {
         }
         let wanted_n = situation.tractive_force_n;
         let most_n = if given.driven { f64::INFINITY } else { most_n };
-        if let Command::Accelerate(_) = command { wanted_n.max(least_n).min(most_n) } else { wanted_n }
+        match command {
+            Command::Accelerate(_) | Command::Push(_) => wanted_n.max(least_n).min(most_n),
+            Command::Coast | Command::Recorded(_) => wanted_n,
+        }
     }
 
     /// Where the vehicle is, and in what air.
@@ -323,6 +338,19 @@ impl Model {
             drawbar_n: given.drawbar_force_n.unwrap_or(0.0),
             ..Sums::default()
         };
+        let mut carried_kg = 0.0;
+        let tasks = self.tasks.iter().zip(&layout.tasks);
+        for ((task, range), mode) in tasks.zip(&scratch.modes) {
+            let rates = &mut rates[range.clone()];
+            let load = task.plugin.load_in(*mode, situation, &states[range.clone()], rates);
+            sums.drawbar_n += load.drawbar_force_n;
+            sums.task_push_n += load.force_n;
+            sums.pto_power_w += load.pto_power_w;
+            sums.hydraulic_power_w += load.hydraulic_power_w;
+            sums.towed_kg += load.towed_mass_kg;
+            carried_kg += load.mass_kg;
+        }
+        situation.mass_kg += carried_kg;
         self.ask(situation, layout, states, rates, scratch);
         let (mass_kg, area_m2) = scratch
             .actions
@@ -343,13 +371,6 @@ impl Model {
             sums.slip_per_n += action.slip_per_n;
             sums.engine_friction_n_m += action.engine_friction_n_m;
             sums.battery_resistance_ohm += action.battery_resistance_ohm;
-        }
-        for (index, task) in self.tasks.iter().enumerate() {
-            let range = layout.tasks[index].clone();
-            let load = task.plugin.load(situation, &states[range.clone()], &mut rates[range]);
-            sums.drawbar_n += load.drawbar_force_n;
-            sums.pto_power_w += load.pto_power_w;
-            sums.hydraulic_power_w += load.hydraulic_power_w;
         }
         sums
     }
@@ -376,6 +397,8 @@ impl Model {
 #[allow(clippy::struct_field_names, reason = "each name ends in its unit")]
 struct Sums {
     rotating_kg: f64,
+    towed_kg: f64,
+    task_push_n: f64,
     pushed_n: f64,
     resistance_n: f64,
     auxiliary_power_w: f64,
@@ -398,7 +421,7 @@ fn book(instant: &Instant, way: f64, given: &Given, slots: &Slots, actions: &[Ac
     powers[AIR] = -instant.air_n * speed_m_s;
     powers[SLOPE] = instant.slope_n * speed_m_s;
     powers[BRAKES] = way * instant.brake_n * speed_m_s;
-    powers[DRAWBAR] = way * instant.drawbar_n * speed_m_s;
+    powers[DRAWBAR] = (way * instant.drawbar_n - instant.pushed_n) * speed_m_s;
     powers[PTO] = instant.pto_power_w;
     powers[HYDRAULICS] = instant.hydraulic_power_w;
     powers[AUXILIARY] = given.auxiliary_power_w.unwrap_or(0.0);

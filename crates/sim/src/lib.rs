@@ -7,19 +7,26 @@
 mod balance;
 mod cycle;
 #[cfg(test)]
+mod cycle_tests;
+mod driving;
+#[cfg(test)]
 mod effect_tests;
+mod ending;
 mod ledger;
 mod model;
 #[cfg(test)]
 mod physics_tests;
+mod plan;
 mod recorder;
+mod reference;
 mod replay;
 mod slope;
 mod step;
 
-pub use cycle::{Cycle, Phase, Start, Until, simulate};
+pub use cycle::simulate;
 pub use ledger::{Entry, Ledger};
 pub use model::{Model, Named, Resistance, Vehicle};
+pub use plan::{Cycle, Driven, EngineSpeed, Phase, Pi, Setting, Start, Until};
 pub use replay::{Drive, Inputs, Replay, ReplayError, replay};
 pub use slope::{LocalFit, local_fit, travelled};
 
@@ -37,6 +44,8 @@ pub struct Outcome {
     pub end: End,
     /// Steps that were integrated.
     pub steps: usize,
+    /// The phases of a cycle as they were driven, in their order.
+    pub phases: Vec<Driven>,
 }
 
 /// How a simulation ended.

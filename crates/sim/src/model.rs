@@ -82,11 +82,18 @@ pub(crate) struct Layout {
     pub driveline: std::ops::Range<usize>,
     pub tasks: Vec<std::ops::Range<usize>>,
     pub effects: Vec<std::ops::Range<usize>>,
+    /// What the driver remembers; `None` where the driver remembers nothing.
+    pub driver: Option<usize>,
     /// Channel name and initial value of each state.
     pub states: Vec<(String, f64)>,
 }
 
 impl Model {
+    /// Names of all states, as they stand in a trace.
+    pub fn states(&self) -> Vec<String> {
+        self.layout().states.into_iter().map(|(name, _)| name).collect()
+    }
+
     pub(crate) fn layout(&self) -> Layout {
         let mut states = Vec::new();
         let mut claim = |prefix: &str, own: Vec<State>| {
@@ -104,6 +111,6 @@ impl Model {
         let driveline = claim("", self.driveline.states());
         let tasks = self.tasks.iter().map(|task| claim(&task.name, task.plugin.states())).collect();
         let effects = self.effects.iter().map(|effect| claim(&effect.name, effect.plugin.states())).collect();
-        Layout { driveline, tasks, effects, states }
+        Layout { driveline, tasks, effects, driver: None, states }
     }
 }

@@ -94,7 +94,7 @@ impl Effect for Fading {
     }
 }
 
-fn tractor(speed_scale_m_s: f64, drag_area_m2: f64) -> Model {
+pub(crate) fn tractor(speed_scale_m_s: f64, drag_area_m2: f64) -> Model {
     Model {
         vehicle: Vehicle {
             mass_kg: MASS_KG,
@@ -112,7 +112,7 @@ fn tractor(speed_scale_m_s: f64, drag_area_m2: f64) -> Model {
     }
 }
 
-fn drive(model: &Model, start_m_s: f64, step_s: f64, phases: Vec<Phase>) -> Outcome {
+pub(crate) fn drive(model: &Model, start_m_s: f64, step_s: f64, phases: Vec<Phase>) -> Outcome {
     let start = Start { position_m: 0.0, speed_m_s: start_m_s };
     let cycle = Cycle { start, phases, driver_gain_per_s: 1.0, step_s, longest_s: 1000.0 };
     simulate(model, &cycle).unwrap()
@@ -122,7 +122,7 @@ fn coast(model: &Model, start_m_s: f64, step_s: f64) -> Outcome {
     drive(model, start_m_s, step_s, vec![Phase::Coast { until: Until::Stopped }])
 }
 
-fn last(outcome: &Outcome, channel: &str) -> f64 {
+pub(crate) fn last(outcome: &Outcome, channel: &str) -> f64 {
     *outcome.trace.get(channel).unwrap().last().unwrap()
 }
 

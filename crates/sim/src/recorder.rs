@@ -113,7 +113,7 @@ impl Recorder {
             instant.soil_n,
             -instant.air_n,
             instant.slope_n,
-            instant.drawbar_n,
+            instant.drawbar_n - instant.pushed_n,
             instant.pto_power_w,
             instant.hydraulic_power_w,
             instant.auxiliary_power_w,

@@ -8,7 +8,7 @@ use crate::balance::{Command, Given};
 use crate::ledger::Ledger;
 use crate::recorder::Recorder;
 use crate::slope::{LocalFit, local_fit, travelled};
-use crate::step::Machine;
+use crate::step::{Machine, Moment};
 use crate::{End, Model, Outcome};
 use headland_trace::{Origin, Trace, TraceError};
 
@@ -280,7 +280,7 @@ impl<'a> Tape<'a> {
                 other => other,
             };
             let given = Given { driven, ..given };
-            let control = move |_: f64, _: f64, _: f64| (command, given);
+            let control = move |_: &Moment| (command, given);
             let instant = if index == 0 {
                 machine.set_motion(self.position_m[0], speed);
                 machine.instant(&control)
@@ -312,13 +312,13 @@ impl<'a> Tape<'a> {
             if stands {
                 machine.set_motion(machine.position_m(), 0.0);
             }
-            let control = |time_s: f64, _: f64, speed: f64| {
-                let share = if span_s > 0.0 { (time_s - begin_s) / span_s } else { 0.0 };
+            let control = |at: &Moment| {
+                let share = if span_s > 0.0 { (at.time_s - begin_s) / span_s } else { 0.0 };
                 let (given, coasting) = self.given(model, index, share);
                 let command = if stands {
                     Command::Accelerate(0.0)
                 } else {
-                    self.pushed(model, how, (index, share), speed, coasting)
+                    self.pushed(model, how, (index, share), at.speed_m_s, coasting)
                 };
                 (command, given)
             };
@@ -332,7 +332,7 @@ impl<'a> Tape<'a> {
             while machine.time_s < self.time_s[next] {
                 let left_s = self.time_s[next] - machine.time_s;
                 let step_s = left_s.min(span_s / pieces);
-                if machine.step(&first, step_s, &control, |_, _, _| f64::INFINITY) >= left_s - 1e-12 {
+                if machine.step(&first, step_s, &control, |_: &Moment| f64::INFINITY) >= left_s - 1e-12 {
                     machine.time_s = self.time_s[next];
                 } else {
                     first = machine.instant(&control);
@@ -350,7 +350,13 @@ fn finish(machine: &Machine, recorder: Recorder) -> Result<Outcome, ReplayError>
         &machine.slots,
         machine.energies_j(),
     );
-    Ok(Outcome { trace: recorder.finish()?, ledger, end: End::Finished, steps: machine.steps })
+    Ok(Outcome {
+        trace: recorder.finish()?,
+        ledger,
+        end: End::Finished,
+        steps: machine.steps,
+        phases: Vec::new(),
+    })
 }
 
 /// Marks the channels that agree with the recording because they were taken from it.

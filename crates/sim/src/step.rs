@@ -9,15 +9,26 @@ use crate::balance::{Command, Given, Instant, Point, Scratch};
 use crate::ledger::{MASS_CHANGE, Slots};
 use crate::model::Layout;
 
-/// What the driver does at a time, position and speed.
-pub(crate) trait Control {
-    /// Command and recorded circumstances.
-    fn at(&self, time_s: f64, position_m: f64, speed_m_s: f64) -> (Command, Given);
+/// Where a machine is, what it does and what its models remember.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moment<'a> {
+    pub time_s: f64,
+    pub position_m: f64,
+    pub speed_m_s: f64,
+    pub states: &'a [f64],
 }
 
-impl<F: Fn(f64, f64, f64) -> (Command, Given)> Control for F {
-    fn at(&self, time_s: f64, position_m: f64, speed_m_s: f64) -> (Command, Given) {
-        self(time_s, position_m, speed_m_s)
+/// What the driver does at a moment.
+pub(crate) trait Control {
+    /// Command and recorded circumstances.
+    fn at(&self, moment: &Moment) -> (Command, Given);
+}
+
+impl<F: Fn(&Moment) -> (Command, Given)> Control for F {
+    #[allow(clippy::inline_always, reason = "see the balance")]
+    #[inline(always)]
+    fn at(&self, moment: &Moment) -> (Command, Given) {
+        self(moment)
     }
 }
 
@@ -41,16 +52,35 @@ pub(crate) struct Machine<'a> {
     slopes: [Vec<f64>; 4],
     first_kinetic_j: Option<f64>,
     mass_kg: f64,
+    /// Effective mass at the second, third and fourth stage of the last step [kg].
+    stage_masses_kg: [f64; 3],
+    /// Speed at those stages [m/s].
+    stage_speeds_m_s: [f64; 3],
 }
 
 impl<'a> Machine<'a> {
     pub fn new(model: &'a Model, time_s: f64, position_m: f64, speed_m_s: f64) -> Self {
-        let (layout, slots) = (model.layout(), Slots::of(model));
+        Self::laid_out(model, model.layout(), time_s, position_m, speed_m_s)
+    }
+
+    /// With a driver who remembers one number, called `name` in the trace.
+    pub fn with_driver(model: &'a Model, name: &str, position_m: f64, speed_m_s: f64) -> Self {
+        let mut layout = model.layout();
+        layout.driver = Some(layout.states.len());
+        layout.states.push((name.to_owned(), 0.0));
+        Self::laid_out(model, layout, 0.0, position_m, speed_m_s)
+    }
+
+    fn laid_out(model: &'a Model, layout: Layout, time_s: f64, position_m: f64, speed_m_s: f64) -> Self {
+        let slots = Slots::of(model);
         let mut y = vec![position_m, speed_m_s];
         y.extend(layout.states.iter().map(|(_, initial)| *initial));
         y.resize(y.len() + slots.names.len(), 0.0);
         let zero = vec![0.0; y.len()];
-        let scratch = Scratch { actions: vec![headland_plugin::Action::default(); model.effects.len()] };
+        let scratch = Scratch {
+            actions: vec![headland_plugin::Action::default(); model.effects.len()],
+            modes: vec![headland_plugin::Mode::default(); model.tasks.len()],
+        };
         Self {
             model,
             layout,
@@ -64,6 +94,8 @@ impl<'a> Machine<'a> {
             y,
             first_kinetic_j: None,
             mass_kg: f64::NAN,
+            stage_masses_kg: [f64::NAN; 3],
+            stage_speeds_m_s: [f64::NAN; 3],
         }
     }
 
@@ -91,6 +123,31 @@ impl<'a> Machine<'a> {
 
     pub fn set_state(&mut self, index: usize, value: f64) {
         self.y[FIRST_STATE + index] = value;
+    }
+
+    /// The moment at which the machine stands.
+    pub fn moment(&self) -> Moment<'_> {
+        Moment {
+            time_s: self.time_s,
+            position_m: self.y[POSITION],
+            speed_m_s: self.y[SPEED],
+            states: self.states(),
+        }
+    }
+
+    /// Why a task cannot do what it is told.
+    pub fn trouble(&self, instant: &Instant) -> Option<String> {
+        let tasks = self.model.tasks.iter().zip(&self.layout.tasks).zip(&self.scratch.modes);
+        tasks.into_iter().find_map(|((task, range), mode)| {
+            let own = &self.states()[range.clone()];
+            let reason = task.plugin.trouble(*mode, &instant.situation, own)?;
+            Some(format!("{}: {reason}", task.name))
+        })
+    }
+
+    /// What each task is told to do from now on.
+    pub fn modes(&mut self) -> &mut [headland_plugin::Mode] {
+        &mut self.scratch.modes
     }
 
     pub fn effect_actions(&self) -> &[headland_plugin::Action] {
@@ -165,23 +222,28 @@ impl<'a> Machine<'a> {
         control: &impl Control,
         slope: &mut [f64],
     ) -> Instant {
-        let (command, given) = control.at(time_s, y[POSITION], y[SPEED]);
         let states = self.layout.states.len();
+        let (position_m, speed_m_s) = (y[POSITION], y[SPEED]);
+        let moment = Moment { time_s, position_m, speed_m_s, states: &y[FIRST_STATE..FIRST_STATE + states] };
+        let (command, given) = control.at(&moment);
         let (motion, rest) = slope.split_at_mut(FIRST_STATE);
         let (rates, powers) = rest.split_at_mut(states);
-        let point = Point { time_s, position_m: y[POSITION], speed_m_s: y[SPEED], direction };
+        if let Some(driver) = self.layout.driver {
+            rates[driver] = given.driver_rate;
+        }
+        let point = Point { time_s, position_m, speed_m_s, direction };
         let instant = self.model.balance(
             point,
             command,
             &given,
             &self.layout,
             &self.slots,
-            &y[FIRST_STATE..FIRST_STATE + states],
+            moment.states,
             rates,
             powers,
             &mut self.scratch,
         );
-        motion[POSITION] = y[SPEED];
+        motion[POSITION] = speed_m_s;
         motion[SPEED] = instant.acceleration_m_s2;
         instant
     }
@@ -193,16 +255,19 @@ impl<'a> Machine<'a> {
         first: &Instant,
         step_s: f64,
         control: &impl Control,
-        event: impl Fn(f64, f64, f64) -> f64,
+        event: impl Fn(&Moment) -> f64,
     ) -> f64 {
         self.steps += 1;
         std::mem::swap(&mut self.start, &mut self.y);
         let from_rest = self.start[SPEED] == 0.0;
         let direction = if from_rest { sign(first.acceleration_m_s2) } else { sign(self.start[SPEED]) };
         let begin_s = self.time_s;
+        let states = FIRST_STATE..FIRST_STATE + self.layout.states.len();
         let measure = |y: &[f64], step: f64| {
             let ahead = if from_rest { f64::INFINITY } else { y[SPEED] * direction };
-            event(begin_s + step, y[POSITION], y[SPEED]).min(ahead)
+            let (position_m, speed_m_s) = (y[POSITION], y[SPEED]);
+            let time_s = begin_s + step;
+            event(&Moment { time_s, position_m, speed_m_s, states: &y[states.clone()] }).min(ahead)
         };
         self.runge_kutta(step_s, direction, control);
         let mut taken = step_s;
@@ -215,7 +280,28 @@ impl<'a> Machine<'a> {
             self.y[SPEED] = 0.0;
         }
         self.time_s = begin_s + taken;
+        if self.stage_masses_kg != [first.effective_mass_kg; 3] {
+            self.book_masses(first.effective_mass_kg);
+        }
         taken
+    }
+
+    /// Books the kinetic energy that mass brings or takes along a step, ∫ ½ v² dm, from the mass at its first stage on.
+    ///
+    /// Mass and the square of speed are parabolas through the stages, and their product is integrated by Simpson's rule.
+    fn book_masses(&mut self, first_kg: f64) {
+        let [second, third, last] = self.stage_masses_kg;
+        let middle = 0.5 * (second + third);
+        let square = |speed: f64| speed * speed;
+        let begin = square(self.start[SPEED]);
+        let half = 0.5 * (square(self.stage_speeds_m_s[0]) + square(self.stage_speeds_m_s[1]));
+        let end = square(self.stage_speeds_m_s[2]);
+        let gain = begin * (4.0 * middle - 3.0 * first_kg - last)
+            + half * 4.0 * (last - first_kg)
+            + end * (first_kg - 4.0 * middle + 3.0 * last);
+        let account = FIRST_STATE + self.layout.states.len() + MASS_CHANGE;
+        self.y[account] -= 0.5 * gain / 6.0;
+        self.mass_kg = last;
     }
 
     /// Books the kinetic energy that mass brings when it comes aboard, or is coupled, at speed.
@@ -270,7 +356,9 @@ impl<'a> Machine<'a> {
             for ((value, start), before) in y.iter_mut().zip(&self.start).zip(&self.slopes[stage - 1]) {
                 *value = start + lead * before;
             }
-            self.derive(self.time_s + lead, &y, direction, control, &mut slope);
+            let instant = self.derive(self.time_s + lead, &y, direction, control, &mut slope);
+            self.stage_masses_kg[stage - 1] = instant.effective_mass_kg;
+            self.stage_speeds_m_s[stage - 1] = y[SPEED];
             self.stage = y;
             self.slopes[stage] = slope;
         }

@@ -1,0 +1,220 @@
+//! How each kind of phase is driven.
+
+use crate::balance::{Command, Given, Instant};
+use crate::cycle::{Hopeless, Running};
+use crate::ending::Ending;
+use crate::plan::{EngineSpeed, Phase, Until};
+use crate::reference::{Driver, Reference};
+use crate::step::{Machine, Moment};
+
+/// Below this acceleration [m/s²] a vehicle that wants more has reached the end of its force.
+const NO_MORE_ACCELERATION_M_S2: f64 = 1e-5;
+
+impl Running<'_> {
+    /// What the driver keeps at hand, by time.
+    fn given(&self) -> impl Fn(f64) -> Given + use<> {
+        let begin_s = self.machine.time_s;
+        let (kept, over) = match &self.setting.engine_speed {
+            EngineSpeed::Free => (0.0, None),
+            EngineSpeed::Kept(speed) => (*speed, None),
+            EngineSpeed::Over(points) => (0.0, Some(Reference::along(begin_s, points))),
+        };
+        move |time_s| {
+            let engine_speed_rad_s = over.as_ref().map_or(kept, |over| over.speed_m_s(time_s));
+            Given { engine_speed_rad_s, ..Given::default() }
+        }
+    }
+
+    /// Drives a phase; says what ended it.
+    pub(crate) fn drive(&mut self, phase: &Phase) -> Result<String, String> {
+        let begin_s = self.machine.time_s;
+        match phase {
+            Phase::Reach { speed_m_s, acceleration_m_s2 } => self.reach(*speed_m_s, *acceleration_m_s2),
+            Phase::Hold { for_s } => {
+                let ending = Ending::of(&Until::Elapsed(*for_s), &self.machine)?;
+                if self.setting.driver.is_some() {
+                    let reference = Reference::steady(begin_s, self.target_m_s);
+                    return self.follow(&reference, &ending, &never);
+                }
+                let (gain, target, given) = (self.cycle.driver_gain_per_s, self.target_m_s, self.given());
+                let control =
+                    |at: &Moment| (Command::Accelerate(gain * (target - at.speed_m_s)), given(at.time_s));
+                self.until(&control, &ending, f64::INFINITY, &never)?;
+                Ok(ending.told(&self.machine.moment()))
+            }
+            Phase::Coast { until } => self.coast(until),
+            Phase::Follow { profile } => {
+                let last_s = profile.last().map_or(0.0, |(at_s, _)| *at_s);
+                let ending = Ending::at_time(begin_s + last_s, "at the end of the profile".to_owned());
+                self.follow(&Reference::along(begin_s, profile), &ending, &never)
+            }
+            Phase::Drive { speed_m_s, acceleration_m_s2, tolerance_m_s, until } => {
+                self.drive_at(*speed_m_s, *acceleration_m_s2, *tolerance_m_s, until)
+            }
+            Phase::DriveByPlace { profile, acceleration_m_s2, until } => {
+                self.by_place(profile, *acceleration_m_s2, until)
+            }
+            Phase::Stand { until } => {
+                if self.machine.speed_m_s() != 0.0 {
+                    let speed = self.machine.speed_m_s();
+                    return Err(format!("the vehicle is to stand, and rolls at {speed:.2} m/s"));
+                }
+                self.target_m_s = 0.0;
+                let ending = Ending::of(until, &self.machine)?;
+                self.stand(&ending)
+            }
+            Phase::With { .. } => Err("a phase stands within another".to_owned()),
+        }
+    }
+
+    fn reach(&mut self, target: f64, acceleration_m_s2: f64) -> Result<String, String> {
+        let up = target > self.machine.speed_m_s();
+        let rate = if up { acceleration_m_s2 } else { -acceleration_m_s2 };
+        self.target_m_s = target;
+        if target == self.machine.speed_m_s() {
+            return Ok("it drives at that speed".to_owned());
+        }
+        let given = self.given();
+        let control = |at: &Moment| (Command::Accelerate(rate), given(at.time_s));
+        let ending = Ending::at_speed(target, up);
+        self.until(&control, &ending, f64::INFINITY, &|machine, instant| {
+            let short = (machine.speed_m_s() - target).abs() > 0.0
+                && instant.acceleration_m_s2 * rate.signum() < NO_MORE_ACCELERATION_M_S2;
+            short.then(|| {
+                format!(
+                    "the drive cannot bring the vehicle to {target:.2} m/s: at {:.2} m/s its force of {:.0} N \
+                     only matches the resistances",
+                    machine.speed_m_s(),
+                    instant.delivery.force_n
+                )
+            })
+        })?;
+        Ok(ending.told(&self.machine.moment()))
+    }
+
+    fn coast(&mut self, until: &Until) -> Result<String, String> {
+        let given = self.given();
+        let control = |at: &Moment| (Command::Coast, given(at.time_s));
+        let ending = Ending::of(until, &self.machine)?;
+        // Time comes to a vehicle at rest too; and one that was at rest may be waiting for a slope's pull.
+        let moving = self.machine.speed_m_s() != 0.0;
+        let waits = moving && !ending.comes_at_rest() && *until != Until::Stopped;
+        let result = self.until(&control, &ending, f64::INFINITY, &|machine, instant| {
+            (waits && machine.speed_m_s() == 0.0 && instant.acceleration_m_s2 == 0.0)
+                .then(|| "the vehicle has come to rest before the end of the coasting phase".to_owned())
+        });
+        self.target_m_s = self.machine.speed_m_s();
+        result.map(|_| ending.told(&self.machine.moment()))
+    }
+
+    /// Comes to a speed and keeps it.
+    fn drive_at(
+        &mut self,
+        target: f64,
+        acceleration_m_s2: f64,
+        tolerance_m_s: Option<f64>,
+        until: &Until,
+    ) -> Result<String, String> {
+        let speed = self.machine.speed_m_s();
+        let mut ending = Ending::of(until, &self.machine)?;
+        self.target_m_s = target;
+        if target == 0.0 {
+            if speed > 0.0 {
+                let given = self.given();
+                let control = |at: &Moment| (Command::Accelerate(-acceleration_m_s2), given(at.time_s));
+                let rests = |machine: &Machine, _: &Instant| (machine.speed_m_s() == 0.0).then(String::new);
+                match self.until(&control, &ending, f64::INFINITY, &rests) {
+                    Err(reason) if reason.is_empty() => {}
+                    Err(reason) => return Err(reason),
+                    Ok(_) => return Ok(ending.told(&self.machine.moment())),
+                }
+            }
+            return self.stand(&ending);
+        }
+        if speed == 0.0 {
+            ending = ending.without_rest();
+        }
+        let reference = Reference::ramp(self.machine.time_s, speed, target, acceleration_m_s2);
+        self.follow(&reference, &ending, &|machine, instant| {
+            let behind = reference.speed_m_s(machine.time_s) - machine.speed_m_s();
+            let stalled =
+                machine.speed_m_s() == 0.0 && instant.acceleration_m_s2 <= 0.0 && behind > 0.0;
+            let force = instant.delivery.force_n;
+            if stalled {
+                return Some(format!(
+                    "the vehicle stands where it is to drive at {target:.2} m/s: the {force:.0} N of its drive do not \
+                     overcome the resistances"
+                ));
+            }
+            tolerance_m_s.filter(|tolerance| behind > *tolerance).map(|tolerance| {
+                format!(
+                    "the speed of {:.2} m/s falls behind what is wanted by {behind:.2} m/s, more than the {tolerance} m/s \
+                     that are tolerated: the drive gives {force:.0} N",
+                    machine.speed_m_s()
+                )
+            })
+        })
+    }
+
+    /// Follows a reference piece by piece, so that no step crosses one of its corners.
+    fn follow(
+        &mut self,
+        reference: &Reference,
+        ending: &Ending,
+        hopeless: Hopeless,
+    ) -> Result<String, String> {
+        let driver = self.setting.driver.map_or(Driver::Knowing(self.cycle.driver_gain_per_s), Driver::Pi);
+        let memory = self.machine.layout.driver;
+        let given = self.given();
+        for corner_s in reference.corners_s().into_iter().chain([f64::INFINITY]) {
+            let piece_s = self.machine.time_s;
+            if corner_s <= piece_s {
+                continue;
+            }
+            let control = |at: &Moment| driver.follow(reference, piece_s, memory, at, given(at.time_s));
+            self.target_m_s = reference.speed_m_s(if corner_s.is_finite() { corner_s } else { piece_s });
+            if self.until(&control, ending, corner_s, hopeless)? {
+                break;
+            }
+        }
+        Ok(ending.told(&self.machine.moment()))
+    }
+
+    fn by_place(&mut self, profile: &[(f64, f64)], most: f64, until: &Until) -> Result<String, String> {
+        let mut ending = Ending::of(until, &self.machine)?;
+        if self.machine.speed_m_s() == 0.0 {
+            ending = ending.without_rest();
+        }
+        // A speed by place is a reference over position in place of time.
+        let wanted = Reference::along(0.0, profile);
+        let (gain, given) = (self.cycle.driver_gain_per_s, self.given());
+        let control = |at: &Moment| {
+            let (speed, slope) = wanted.at(at.position_m);
+            let acceleration = slope * at.speed_m_s + gain * (speed - at.speed_m_s);
+            (Command::Accelerate(acceleration.clamp(-most, most)), given(at.time_s))
+        };
+        self.until(&control, &ending, f64::INFINITY, &|machine, instant| {
+            (machine.speed_m_s() == 0.0 && instant.acceleration_m_s2 <= 0.0).then(|| {
+                let force = instant.delivery.force_n;
+                format!("the vehicle stands on its way: the {force:.0} N of its drive do not overcome the resistances")
+            })
+        })?;
+        self.target_m_s = self.machine.speed_m_s();
+        Ok(ending.told(&self.machine.moment()))
+    }
+
+    fn stand(&mut self, ending: &Ending) -> Result<String, String> {
+        if !ending.comes_at_rest() && ending.left(&self.machine.moment()) > 0.0 {
+            return Err("the vehicle stands, and nothing that the phase waits for comes to one that stands"
+                .to_owned());
+        }
+        let given = self.given();
+        let control = |at: &Moment| (Command::Accelerate(0.0), given(at.time_s));
+        self.until(&control, ending, f64::INFINITY, &never)?;
+        Ok(ending.told(&self.machine.moment()))
+    }
+}
+
+fn never(_: &Machine, _: &Instant) -> Option<String> {
+    None
+}

@@ -1,0 +1,190 @@
+//! What a cycle is made of: phases, what ends them, and what the driver and the tasks do in them.
+
+use headland_plugin::Mode;
+use serde::Serialize;
+
+/// How a run begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Start {
+    /// Distance along the path [m].
+    pub position_m: f64,
+    /// Speed [m/s].
+    pub speed_m_s: f64,
+}
+
+/// When a phase ends. Where it is true as the phase begins, the phase ends at once; a position or a time that lies behind
+/// the vehicle is none that it can reach, and stops the run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Until {
+    /// The vehicle rests.
+    Stopped,
+    /// Its speed has fallen to this [m/s].
+    SpeedBelow(f64),
+    /// Its speed has risen to this [m/s].
+    SpeedAbove(f64),
+    /// This long after the phase began [s].
+    Elapsed(f64),
+    /// This long after the run began [s].
+    Time(f64),
+    /// This far after the phase began [m].
+    Travelled(f64),
+    /// At this distance along the path [m].
+    Position(f64),
+    /// At the next mark of this name along the path.
+    Mark(String),
+    /// At the end of the path.
+    PathEnd,
+    /// A state has risen to this, in its unit.
+    StateAbove {
+        /// Its name in the trace.
+        state: String,
+        /// Value to reach.
+        value: f64,
+    },
+    /// A state has fallen to this, in its unit.
+    StateBelow {
+        /// Its name in the trace.
+        state: String,
+        /// Value to reach.
+        value: f64,
+    },
+    /// The first of these.
+    Any(Vec<Until>),
+}
+
+/// One piece of a cycle.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Phase {
+    /// Change speed at a steady rate.
+    Reach {
+        /// Speed to reach [m/s].
+        speed_m_s: f64,
+        /// Rate, more than 0 [m/s²].
+        acceleration_m_s2: f64,
+    },
+    /// Keep the speed.
+    Hold {
+        /// For this long [s].
+        for_s: f64,
+    },
+    /// Neutral, no brake.
+    Coast {
+        /// Until then.
+        until: Until,
+    },
+    /// Follow a speed over time.
+    Follow {
+        /// Time since the phase began [s] and speed [m/s], linear in between, times increasing from 0.
+        profile: Vec<(f64, f64)>,
+    },
+    /// Drive at a speed, coming to it at a steady rate.
+    Drive {
+        /// Speed to reach and to keep [m/s].
+        speed_m_s: f64,
+        /// Rate at which it is come to, more than 0 [m/s²].
+        acceleration_m_s2: f64,
+        /// The run stops where the speed falls behind what the driver wants by more than this [m/s].
+        tolerance_m_s: Option<f64>,
+        /// Until then.
+        until: Until,
+    },
+    /// Drive at a speed that depends on the place.
+    DriveByPlace {
+        /// Distance along the path [m] and speed [m/s], linear in between, positions increasing; beyond its ends the
+        /// first and the last speed hold.
+        profile: Vec<(f64, f64)>,
+        /// Greatest rate of change of speed [m/s²].
+        acceleration_m_s2: f64,
+        /// Until then.
+        until: Until,
+    },
+    /// Stand, brakes on.
+    Stand {
+        /// Until then.
+        until: Until,
+    },
+    /// Another phase, with what goes on in it.
+    With {
+        /// What goes on.
+        setting: Setting,
+        /// The phase.
+        phase: Box<Phase>,
+    },
+}
+
+/// What goes on in a phase beside driving.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Setting {
+    /// What the phase is called.
+    pub name: Option<String>,
+    /// The phase is passed over unless all of these are true as it would begin.
+    pub when: Vec<Until>,
+    /// What each task is told to do, by name; those that are not named rest. `None`: all work.
+    pub tasks: Option<Vec<(String, Mode)>>,
+    /// Speed at which the driver keeps the engine.
+    pub engine_speed: EngineSpeed,
+    /// A driver who knows no resistances; `None`: one who does.
+    pub driver: Option<Pi>,
+}
+
+/// Speed at which the driver keeps the engine.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum EngineSpeed {
+    /// The driveline chooses.
+    #[default]
+    Free,
+    /// This one [rad/s].
+    Kept(f64),
+    /// Time since the phase began [s] and speed [rad/s], linear in between.
+    Over(Vec<(f64, f64)>),
+}
+
+/// A driver who sees the speed and the road ahead, and knows no resistance: force over mass is
+/// k (v_ref(t + preview) − v) + k_i ∫ (v_ref − v) dt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pi {
+    /// Proportional gain, k [1/s].
+    pub gain_per_s: f64,
+    /// Integral gain, k_i [1/s²].
+    pub integral_per_s2: f64,
+    /// The most that the integral part asks for, either way [m/s²]; beyond it, it does not grow.
+    pub integral_limit_m_s2: f64,
+    /// How far ahead the driver sees the wanted speed [s].
+    pub preview_s: f64,
+}
+
+/// How a run is driven.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cycle {
+    /// How it begins.
+    pub start: Start,
+    /// Its phases.
+    pub phases: Vec<Phase>,
+    /// How fast the driver takes back an error of speed [1/s].
+    ///
+    /// The driver knows the resistances and feeds them forward: a = dv_ref/dt + gain (v_ref − v).
+    pub driver_gain_per_s: f64,
+    /// Step of the integration [s].
+    pub step_s: f64,
+    /// A run longer than this is stopped [s].
+    pub longest_s: f64,
+}
+
+/// A phase that was driven, or passed over.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Driven {
+    /// Its place in the plan, from 0.
+    pub phase: usize,
+    /// What it is called.
+    pub name: Option<String>,
+    /// When it began [s].
+    pub from_s: f64,
+    /// When it ended [s].
+    pub to_s: f64,
+    /// Where it began along the path [m].
+    pub from_m: f64,
+    /// Where it ended [m].
+    pub to_m: f64,
+    /// What ended it, or why it was passed over, in words.
+    pub ended_by: String,
+}

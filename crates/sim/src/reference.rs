@@ -1,0 +1,100 @@
+//! The speed that a driver wants, over time, and what the driver does about it.
+
+use crate::balance::{Command, Given};
+use crate::plan::Pi;
+use crate::step::Moment;
+
+/// A speed over time since a phase began, linear between its points and constant beyond them.
+#[derive(Clone, Debug)]
+pub(crate) struct Reference {
+    begin_s: f64,
+    points: Vec<(f64, f64)>,
+}
+
+impl Reference {
+    /// The same speed all the time.
+    pub fn steady(begin_s: f64, speed_m_s: f64) -> Self {
+        Self { begin_s, points: vec![(0.0, speed_m_s)] }
+    }
+
+    /// From one speed to another at a steady rate.
+    pub fn ramp(begin_s: f64, from_m_s: f64, to_m_s: f64, rate_m_s2: f64) -> Self {
+        let lasts_s = (to_m_s - from_m_s).abs() / rate_m_s2;
+        if lasts_s == 0.0 {
+            return Self::steady(begin_s, to_m_s);
+        }
+        Self { begin_s, points: vec![(0.0, from_m_s), (lasts_s, to_m_s)] }
+    }
+
+    /// Along points of time since the phase began and speed.
+    pub fn along(begin_s: f64, points: &[(f64, f64)]) -> Self {
+        Self { begin_s, points: points.to_vec() }
+    }
+
+    /// Instants at which its slope changes [s].
+    pub fn corners_s(&self) -> Vec<f64> {
+        self.points.iter().skip(1).map(|(after_s, _)| self.begin_s + after_s).collect()
+    }
+
+    /// Speed [m/s] and its slope [m/s²] on the piece that holds the instant `within_s`, at `time_s`.
+    fn on(&self, within_s: f64, time_s: f64) -> (f64, f64) {
+        let (within, t) = (within_s - self.begin_s, time_s - self.begin_s);
+        let after = self.points.partition_point(|(at, _)| *at <= within);
+        match (after.checked_sub(1).map(|before| self.points[before]), self.points.get(after).copied()) {
+            (Some((t0, v0)), Some((t1, v1))) => {
+                let rate = (v1 - v0) / (t1 - t0);
+                (v0 + rate * (t - t0), rate)
+            }
+            (Some((_, v)), None) | (None, Some((_, v))) => (v, 0.0),
+            (None, None) => (0.0, 0.0),
+        }
+    }
+
+    /// Speed [m/s] and its slope at an instant; the slope behind a corner.
+    pub fn at(&self, time_s: f64) -> (f64, f64) {
+        self.on(time_s, time_s)
+    }
+
+    /// Speed at an instant [m/s].
+    pub fn speed_m_s(&self, time_s: f64) -> f64 {
+        self.on(time_s, time_s).0
+    }
+}
+
+/// Who drives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Driver {
+    /// Knows the resistances, and takes back an error of speed at this rate [1/s].
+    Knowing(f64),
+    /// Knows none.
+    Pi(Pi),
+}
+
+impl Driver {
+    /// What the driver does on the piece of the reference that holds `piece_s`; `memory` is the place of the driver's
+    /// state among all states.
+    #[allow(clippy::inline_always, reason = "see the balance")]
+    #[inline(always)]
+    pub fn follow(
+        &self,
+        reference: &Reference,
+        piece_s: f64,
+        memory: Option<usize>,
+        at: &Moment,
+        given: Given,
+    ) -> (Command, Given) {
+        let (wanted, rate) = reference.on(piece_s, at.time_s);
+        match self {
+            Self::Knowing(gain) => (Command::Accelerate(rate + gain * (wanted - at.speed_m_s)), given),
+            Self::Pi(pi) => {
+                let ahead = reference.speed_m_s(at.time_s + pi.preview_s);
+                let gathered = memory.map_or(0.0, |index| at.states[index]);
+                let integral = pi.integral_per_s2 * gathered;
+                let error = wanted - at.speed_m_s;
+                let full = integral.abs() >= pi.integral_limit_m_s2 && integral * error > 0.0;
+                let given = Given { driver_rate: if full { 0.0 } else { error }, ..given };
+                (Command::Push(pi.gain_per_s * (ahead - at.speed_m_s) + integral), given)
+            }
+        }
+    }
+}

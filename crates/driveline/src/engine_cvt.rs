@@ -13,6 +13,8 @@
 //! can take is fuelled by the Willans line; beyond, fuel is cut off and the engine turns as fast as its friction has to,
 //! at most as fast as the full-load curve reaches: that limits engine braking. In neutral and at rest the engine idles
 //! or serves the other consumers. These are always served, beyond full load if need be; the wheels get what is left.
+//! A speed at which the driver keeps the engine is kept as far as idle and the full-load curve reach; the wheels then get
+//! what full load gives at that speed.
 //! Leaves out engine dynamics, speed-dependent efficiency, losses without load and limits of the ratio.
 
 use crate::full_load::{FullLoad, Point};
@@ -113,13 +115,19 @@ impl EngineCvt {
         (self.willans_friction_pa * self.displacement_m3 / (4.0 * PI) + extra_n_m).max(0.0) * speed
     }
 
-    fn engine(&self, power: f64, extra_n_m: f64) -> Engine {
-        let idle_friction = self.friction_w(self.idle_speed_rad_s, extra_n_m);
-        if power < -idle_friction {
+    /// The speed at which the driver keeps the engine; idle speed where the transmission chooses.
+    fn least_speed(&self, kept: f64) -> f64 {
+        kept.clamp(self.idle_speed_rad_s, self.curve.last_speed())
+    }
+
+    fn engine(&self, power: f64, extra_n_m: f64, kept: f64) -> Engine {
+        let least_speed = self.least_speed(kept);
+        let least_friction = self.friction_w(least_speed, extra_n_m);
+        if power < -least_friction {
             // Fuel is cut off and friction takes what the wheels give.
-            return Engine { speed: self.idle_speed_rad_s * (-power / idle_friction), fuel_power: 0.0 };
+            return Engine { speed: least_speed * (-power / least_friction), fuel_power: 0.0 };
         }
-        let speed = self.curve.lowest_speed(power / self.load_share);
+        let speed = if kept > 0.0 { least_speed } else { self.curve.lowest_speed(power / self.load_share) };
         // The Willans line times V_d ω / 4π, solved for the power of the fuel.
         Engine { speed, fuel_power: (power + self.friction_w(speed, extra_n_m)) / self.willans_efficiency }
     }
@@ -132,7 +140,10 @@ impl EngineCvt {
         let (v, eta) = (demand.speed_m_s, self.transmission_efficiency);
         let force = demand.force_n.clamp(-self.max_force_n, self.max_force_n);
         let power = force * v;
-        let most = eta * (self.curve.peak_power() - others).max(0.0);
+        let kept = demand.engine_speed_rad_s;
+        let full =
+            if kept > 0.0 { self.curve.power(self.least_speed(kept)) } else { self.curve.peak_power() };
+        let most = eta * (full - others).max(0.0);
         let friction = self.friction_w(self.curve.last_speed(), demand.engine_friction_n_m);
         let least = -(friction + others) / eta;
         if power > most {
@@ -166,7 +177,8 @@ impl Driveline for EngineCvt {
         let eta = self.transmission_efficiency;
         let transmission_input = if wheels > 0.0 { wheels / eta } else { wheels * eta };
         let power = transmission_input + others;
-        let Engine { speed, fuel_power } = self.engine(power, demand.engine_friction_n_m);
+        let Engine { speed, fuel_power } =
+            self.engine(power, demand.engine_friction_n_m, demand.engine_speed_rad_s);
 
         let mut delivery = Delivery { force_n, source_power_w: fuel_power, ..Delivery::NOTHING };
         delivery.losses_w[0] = fuel_power - power;

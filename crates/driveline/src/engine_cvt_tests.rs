@@ -164,3 +164,20 @@ proptest! {
         prop_assert!((fuel(force_n + 1e-3) - fuel(force_n - 1e-3)).abs() < 1.0);
     }
 }
+
+/// At 170 rad/s by hand: T_full = 1570 − 230/40 · 20 = 1455 N m, 247 350 W; less 8 kW, times 0.85, at 10 m/s: 20 344.75 N.
+#[test]
+fn an_engine_that_is_kept_at_a_speed_runs_at_it_and_gives_what_it_has_there() {
+    let kept = |force_n, engine_speed_rad_s| {
+        engine().deliver(&Demand { engine_speed_rad_s, ..asked(10.0, force_n) }, &[], &mut [])
+    };
+    for force_n in [-1e3, 0.0, 5e3, 60e3] {
+        assert_eq!(kept(force_n, 170.0).readings.engine_speed_rad_s, 170.0, "{force_n}");
+    }
+    assert!((kept(60e3, 170.0).force_n - 20_344.75).abs() < 1e-6);
+    assert_eq!(kept(5e3, 300.0).readings.engine_speed_rad_s, 235.0);
+    let free = engine().deliver(&asked(10.0, 5e3), &[], &mut []);
+    assert_eq!(kept(5e3, 0.0).source_power_w, free.source_power_w);
+    let demand = Demand { engine_speed_rad_s: 170.0, shaft_power_w: 40e3, ..asked(10.0, 5e3) };
+    assert!(imbalance_w(&engine(), &demand).abs() < 1e-6);
+}

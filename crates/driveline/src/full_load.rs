@@ -80,6 +80,12 @@ impl FullLoad {
         self.last_speed
     }
 
+    /// Power of full load at a speed; that of the nearest where the curve does not reach.
+    pub(crate) fn power(&self, speed: f64) -> f64 {
+        let within = self.segments.iter().rfind(|segment| segment.low <= speed).or(self.segments.first());
+        within.map_or(0.0, |segment| segment.power(speed.max(segment.low).min(self.last_speed)))
+    }
+
     /// The lowest speed from idle on at which full load gives `power`; that of the greatest power where none does.
     pub(crate) fn lowest_speed(&self, power: f64) -> f64 {
         let Some(segment) = self.segments.iter().find(|segment| segment.power(segment.peak) >= power) else {

@@ -6,16 +6,22 @@
 #![allow(clippy::result_large_err, reason = "a scenario is refused once, not in a loop")]
 
 mod candidate;
+mod cycle;
+#[cfg(test)]
+mod cycle_tests;
 mod document;
 mod error;
 mod fault;
 mod location;
+mod piece;
 mod plugins;
+mod recorded_speed;
 mod scenario;
 #[cfg(test)]
 mod scenario_tests;
 mod schema;
 mod tree;
+mod until;
 
 pub use candidate::{Candidate, CandidateField};
 pub use document::Document;

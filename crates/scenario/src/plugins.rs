@@ -84,7 +84,7 @@ fn nearest<'a>(node: &'a Node, path: &str) -> &'a Node {
     nearest
 }
 
-/// Builds a list of plugins; a second one of the same name is called `name_2`.
+/// Builds the plugins of a list, where a second one of the same name is called `name_2`, or of a map of names of one's own.
 pub fn build_all<T: ?Sized>(
     document: &Document,
     path: &str,
@@ -93,7 +93,20 @@ pub fn build_all<T: ?Sized>(
     folder: &Path,
     remarks: &mut Vec<Remark>,
 ) -> Result<Vec<Named<T>>, ScenarioError> {
-    let Some(Node { shape: Shape::List(values), .. }) = document.find(path) else { return Ok(Vec::new()) };
+    let values = match document.find(path) {
+        Some(Node { shape: Shape::List(values), .. }) => values,
+        Some(Node { shape: Shape::Map(entries), .. }) => {
+            return build_named(document, entries, family, more, folder, remarks);
+        }
+        Some(node) => {
+            return Err(ScenarioError::Syntax {
+                found: format!("`{}`", document.text()[node.span.clone()].lines().next().unwrap_or("")),
+                expected: "a list `[Model(...)]`, or names of your own `{\"name\": Model(...)}`".to_owned(),
+                at: document.location(node.span.start),
+            });
+        }
+        None => return Ok(Vec::new()),
+    };
     let mut all: Vec<Named<T>> = Vec::new();
     let mut kinds: Vec<String> = Vec::new();
     for node in values {
@@ -102,6 +115,40 @@ pub fn build_all<T: ?Sized>(
         let unique = if namesakes == 0 { name.clone() } else { format!("{name}_{}", namesakes + 1) };
         all.push(Named { name: unique, plugin });
         kinds.push(name);
+    }
+    Ok(all)
+}
+
+fn build_named<T: ?Sized>(
+    document: &Document,
+    entries: &[(Node, Node)],
+    family: &Family<T>,
+    more: &'static str,
+    folder: &Path,
+    remarks: &mut Vec<Remark>,
+) -> Result<Vec<Named<T>>, ScenarioError> {
+    let mut all: Vec<Named<T>> = Vec::new();
+    for (key, node) in entries {
+        let refuse = |found: &str, expected: &str| ScenarioError::Value {
+            name: "name".to_owned(),
+            found: found.to_owned(),
+            expected: expected.to_owned(),
+            at: document.location(key.span.start),
+        };
+        let Shape::Text(name) = &key.shape else {
+            return Err(refuse(&document.text()[key.span.clone()], "a name in quotes"));
+        };
+        let usable = name.starts_with(|c: char| c.is_ascii_alphabetic())
+            && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        if !usable {
+            let expected = "letters, digits and `_`, beginning with a letter: it becomes part of channels";
+            return Err(refuse(&format!("\"{name}\""), expected));
+        }
+        if all.iter().any(|other| other.name == *name) {
+            return Err(refuse(&format!("\"{name}\" for the second time"), "each name once"));
+        }
+        let (_, plugin) = build(document, node, family, more, folder, remarks)?;
+        all.push(Named { name: name.clone(), plugin });
     }
     Ok(all)
 }

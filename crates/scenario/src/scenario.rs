@@ -1,14 +1,15 @@
 //! A scenario that was read and checked, and the models that it stands for.
 
 use crate::candidate::{Candidate, candidates};
+use crate::cycle::cycle;
 use crate::document::Document;
 use crate::error::ScenarioError;
 use crate::fault;
 use crate::plugins::{Remark, bounded, build, build_all};
-use crate::schema::{DriveFile, InputFile, PhaseFile, ScenarioFile, UntilFile};
+use crate::schema::{DriveFile, InputFile, ScenarioFile};
 use crate::tree::{Node, Shape};
 use headland_plugin::{Air, Bound, Registry};
-use headland_sim::{Cycle, Drive, Inputs, Model, Phase, Resistance, Start, Until, Vehicle};
+use headland_sim::{Cycle, Drive, Inputs, Model, Resistance, Vehicle};
 use headland_units::constants::STANDARD_GRAVITY_M_S2;
 use std::path::{Path, PathBuf};
 
@@ -75,14 +76,8 @@ pub struct RunSpec {
     pub with: Vec<(String, String)>,
 }
 
-/// A driver who takes back an error of speed within about a second.
-const DRIVER_GAIN_PER_S: f64 = 1.0;
-
 /// No vehicle is simulated in longer steps than this [s].
 const LONGEST_STEP_S: f64 = 10.0;
-
-/// A run that lasts longer than a day has lost its way [s].
-const LONGEST_S: f64 = 86_400.0;
 
 impl Scenario {
     /// Reads and checks a scenario and builds its model once.
@@ -114,7 +109,7 @@ impl Scenario {
         let file = parse(&document)?;
         check_numbers(&document)?;
         let mut remarks = Vec::new();
-        model(&document, &file, registry, &mut remarks)?;
+        let built = model(&document, &file, registry, &mut remarks)?;
         let folder = folder(&document, &file);
         build_all(
             &document,
@@ -124,10 +119,7 @@ impl Scenario {
             &folder,
             &mut remarks,
         )?;
-        let cycle = match &file.cycle {
-            Some(phases) => Some(cycle(&document, &file, phases)?),
-            None => None,
-        };
+        let cycle = cycle(&document, &file, &folder, &built)?;
         let replay = replay_settings(&file);
         let free = free(&document, &file)?;
         let runs = runs(&document)?;
@@ -212,7 +204,7 @@ fn parse(document: &Document) -> Result<ScenarioFile, ScenarioError> {
 }
 
 /// Bounds of the scenario's own numbers.
-const BOUNDS: [(&str, Bound); 17] = [
+const BOUNDS: [(&str, Bound); 16] = [
     ("vehicle.mass_kg", Bound::Positive),
     ("vehicle.rotating_mass_kg", Bound::NotNegative),
     ("vehicle.drag_area_m2", Bound::NotNegative),
@@ -225,7 +217,6 @@ const BOUNDS: [(&str, Bound); 17] = [
     ("air.wind.from_rad", Bound::Finite),
     ("air.temperature_c", Bound::Within(-90.0, 70.0)),
     ("gravity_m_s2", Bound::Positive),
-    ("driver.gain_per_s", Bound::Positive),
     ("simulation.step_s", Bound::Within(1e-6, LONGEST_STEP_S)),
     ("simulation.longest_s", Bound::Positive),
     ("replay.window_s", Bound::Positive),
@@ -317,7 +308,14 @@ fn model(
         None if driveline.needs_management() => return Err(missing("vehicle", "vehicle", "management")),
         None => {}
     }
-    let tasks = build_all(document, "tasks", &registry.tasks, "headland plugins task", &folder, remarks)?;
+    let mut tasks = build_all(document, "tasks", &registry.tasks, "headland plugins task", &folder, remarks)?;
+    let more = "headland plugins task";
+    let of_cycle = build_all(document, "cycle.tasks", &registry.tasks, more, &folder, remarks)?;
+    if let Some(twice) = of_cycle.iter().find(|task| tasks.iter().any(|other| other.name == task.name)) {
+        let found = format!("`{}`, as a task beside it", twice.name);
+        return Err(misfit("tasks", &found, "a name of its own", "cycle.tasks"));
+    }
+    tasks.extend(of_cycle);
     let effects =
         build_all(document, "effects", &registry.effects, "headland plugins effect", &folder, remarks)?;
     Ok(Model {
@@ -339,100 +337,6 @@ fn model(
         tasks,
         effects,
     })
-}
-
-fn cycle(document: &Document, file: &ScenarioFile, phases: &[PhaseFile]) -> Result<Cycle, ScenarioError> {
-    let mut driven = Vec::new();
-    for (index, phase) in phases.iter().enumerate() {
-        let bound = |field: &str, value: f64, bound: Bound| {
-            let at = document.find(&format!("cycle.{index}.{field}")).map_or(0, |node| node.span.start);
-            bounded(document, field.rsplit('.').next().unwrap_or(field), value, bound, at)
-        };
-        driven.push(match phase {
-            PhaseFile::Reach { speed_m_s, acceleration_m_s2 } => {
-                bound("speed_m_s", *speed_m_s, Bound::NotNegative)?;
-                bound("acceleration_m_s2", *acceleration_m_s2, Bound::Positive)?;
-                Phase::Reach { speed_m_s: *speed_m_s, acceleration_m_s2: *acceleration_m_s2 }
-            }
-            PhaseFile::Hold { for_s } => {
-                bound("for_s", *for_s, Bound::NotNegative)?;
-                Phase::Hold { for_s: *for_s }
-            }
-            PhaseFile::Coast { until } => Phase::Coast {
-                until: match until {
-                    UntilFile::Stopped => Until::Stopped,
-                    UntilFile::SpeedBelow { speed_m_s } => {
-                        bound("until.speed_m_s", *speed_m_s, Bound::NotNegative)?;
-                        Until::SpeedBelow(*speed_m_s)
-                    }
-                    UntilFile::Elapsed { for_s } => {
-                        bound("until.for_s", *for_s, Bound::NotNegative)?;
-                        Until::Elapsed(*for_s)
-                    }
-                    UntilFile::Travelled { distance_m } => {
-                        bound("until.distance_m", *distance_m, Bound::NotNegative)?;
-                        Until::Travelled(*distance_m)
-                    }
-                },
-            },
-            PhaseFile::Follow { times_s, speeds_m_s } => {
-                Phase::Follow { profile: profile(document, index, times_s, speeds_m_s)? }
-            }
-        });
-    }
-    let start = file.start.as_ref();
-    let start = Start {
-        position_m: start.map_or(0.0, |start| start.position_m),
-        speed_m_s: start.map_or(0.0, |start| start.speed_m_s),
-    };
-    Ok(Cycle {
-        start,
-        phases: driven,
-        driver_gain_per_s: file.driver.as_ref().map_or(DRIVER_GAIN_PER_S, |driver| driver.gain_per_s),
-        step_s: file.simulation.step_s,
-        longest_s: file.simulation.longest_s.unwrap_or(LONGEST_S),
-    })
-}
-
-fn profile(
-    document: &Document,
-    index: usize,
-    times_s: &[f64],
-    speeds_m_s: &[f64],
-) -> Result<Vec<(f64, f64)>, ScenarioError> {
-    let refuse = |name: &str, found: String, expected: &str, place: String| ScenarioError::Value {
-        name: name.to_owned(),
-        found,
-        expected: expected.to_owned(),
-        at: document.location(document.find(&place).map_or(0, |node| node.span.start)),
-    };
-    let list = |name: &str| format!("cycle.{index}.{name}");
-    if times_s.len() != speeds_m_s.len() {
-        let found = format!("a list of {}", speeds_m_s.len());
-        let expected = format!("as many speeds as times, {}", times_s.len());
-        return Err(refuse("speeds_m_s", found, &expected, list("speeds_m_s")));
-    }
-    if times_s.len() < 2 || times_s[0] != 0.0 {
-        let found = times_s.first().map_or("empty".to_owned(), |first| format!("a list from {first}"));
-        return Err(refuse("times_s", found, "two times or more, the first of them 0", list("times_s")));
-    }
-    for (at, pair) in times_s.windows(2).enumerate() {
-        if pair[1] <= pair[0] || !pair[1].is_finite() {
-            let place = format!("{}.{}", list("times_s"), at + 1);
-            return Err(refuse(
-                "times_s",
-                format!("{} after {}", pair[1], pair[0]),
-                "increasing times",
-                place,
-            ));
-        }
-    }
-    for (at, speed) in speeds_m_s.iter().enumerate() {
-        let place = format!("{}.{at}", list("speeds_m_s"));
-        let byte = document.find(&place).map_or(0, |node| node.span.start);
-        bounded(document, "speeds_m_s", *speed, Bound::NotNegative, byte)?;
-    }
-    Ok(times_s.iter().copied().zip(speeds_m_s.iter().copied()).collect())
 }
 
 fn replay_settings(file: &ScenarioFile) -> ReplaySettings {

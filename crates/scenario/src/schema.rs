@@ -19,11 +19,12 @@ pub struct ScenarioFile {
     pub air: AirFile,
     pub gravity_m_s2: Option<f64>,
     pub start: Option<StartFile>,
-    pub cycle: Option<Vec<PhaseFile>>,
-    pub driver: Option<DriverFile>,
+    #[allow(dead_code, reason = "read from its own piece")]
+    pub cycle: Option<Any>,
+    #[allow(dead_code, reason = "read from its own piece")]
+    pub driver: Option<Any>,
     #[allow(dead_code, reason = "read by the registry")]
-    #[serde(default)]
-    pub tasks: Vec<Any>,
+    pub tasks: Option<Any>,
     #[allow(dead_code, reason = "read by the registry")]
     #[serde(default)]
     pub effects: Vec<Any>,
@@ -91,30 +92,6 @@ pub struct WindFile {
 pub struct StartFile {
     pub position_m: f64,
     pub speed_m_s: f64,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, rename = "driver")]
-pub struct DriverFile {
-    pub gain_per_s: f64,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum PhaseFile {
-    Reach { speed_m_s: f64, acceleration_m_s2: f64 },
-    Hold { for_s: f64 },
-    Coast { until: UntilFile },
-    Follow { times_s: Vec<f64>, speeds_m_s: Vec<f64> },
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum UntilFile {
-    Stopped,
-    SpeedBelow { speed_m_s: f64 },
-    Elapsed { for_s: f64 },
-    Travelled { distance_m: f64 },
 }
 
 #[derive(Debug, Deserialize)]

@@ -1,7 +1,7 @@
 //! A load that fluctuates along the path: a first-order Markov process and a slow trend.
 //!
 //! L(s) = L₀ (1 + σ x(s) + σ_t y(s))
-//! E x(s) x(s + d) = e^(−d / λ),  E y(s) y(s + d) = e^(−d / λ_t),  each normal with variance 1
+//! E x(s) x(s + d) = e^(−d / λ),  E y(s) y(s + d) = e^(−d / λ_t),  each nearly normal with variance 1
 //!
 //! The field is fixed in space: it depends on the seed and on the position and on nothing that was asked before, so that
 //! half a step finds the same ground, and a second pass finds it again. Its values at the ends of blocks of 64 λ are
@@ -14,6 +14,7 @@
 
 use headland_plugin::Refusal;
 use serde::Deserialize;
+use std::sync::LazyLock;
 
 /// How a load fluctuates, as scenarios write it.
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -30,7 +31,7 @@ pub struct Fluctuation {
 const BLOCK_LENGTHS: f64 = 64.0;
 
 /// A block is halved this often: 1024 pieces of λ/16.
-const HALVINGS: u32 = 10;
+const HALVINGS: usize = 10;
 
 impl Fluctuation {
     /// Checks what it was read as.
@@ -67,14 +68,27 @@ impl Fluctuation {
             reason = "it was checked to be whole and small enough"
         )]
         let seed = self.seed as u64;
-        let fast = self.sd * markov(seed, position_m / self.length_m);
-        let slow = self.trend_sd * markov(!seed, position_m / self.trend_length_m);
+        let part = |sd: f64, seed: u64, length_m: f64| {
+            if sd == 0.0 { 0.0 } else { sd * markov(seed, position_m / length_m) }
+        };
+        let fast = part(self.sd, seed, self.length_m);
+        let slow = part(self.trend_sd, !seed, self.trend_length_m);
         (1.0 + fast + slow).max(0.0)
     }
 }
 
 /// The largest whole number below which a float has no gaps.
 const LARGEST_SEED: f64 = 9_007_199_254_740_992.0;
+
+/// Weight of the two neighbours and spread of a middle that is half, a quarter, ... of a block away from them.
+static BRIDGES: LazyLock<[(f64, f64); HALVINGS]> = LazyLock::new(|| {
+    let mut away = BLOCK_LENGTHS;
+    std::array::from_fn(|_| {
+        away *= 0.5;
+        let rho = (-away).exp();
+        (rho / (1.0 + rho * rho), ((1.0 - rho * rho) / (1.0 + rho * rho)).sqrt())
+    })
+});
 
 /// The process at a distance in lengths of correlation.
 fn markov(seed: u64, lengths: f64) -> f64 {
@@ -84,15 +98,10 @@ fn markov(seed: u64, lengths: f64) -> f64 {
     let number = block as i64;
     let mut share = along - block;
     let (mut left, mut right) = (normal(seed, number, 0), normal(seed, number.wrapping_add(1), 0));
-    let mut half = BLOCK_LENGTHS;
     // The middles of a block are numbered as in a heap, from 1.
     let mut place = 1;
-    for _ in 0..HALVINGS {
-        half *= 0.5;
-        let rho = (-half).exp();
-        let mean = (left + right) * rho / (1.0 + rho * rho);
-        let spread = ((1.0 - rho * rho) / (1.0 + rho * rho)).sqrt();
-        let middle = mean + spread * normal(seed, number, place);
+    for (weight, spread) in &*BRIDGES {
+        let middle = weight * (left + right) + spread * normal(seed, number, place);
         share *= 2.0;
         if share < 1.0 {
             right = middle;
@@ -106,18 +115,20 @@ fn markov(seed: u64, lengths: f64) -> f64 {
     left + share * (right - left)
 }
 
-/// A normal number that belongs to a seed, a block and a place in it.
+/// A number of mean 0 and variance 1 that belongs to a seed, a block and a place in it: the sum of eight even ones, which
+/// is normal but for its far tails (kurtosis 2.85, none beyond 4.9) and much quicker to draw.
 fn normal(seed: u64, block: i64, place: u64) -> f64 {
-    let key = seed ^ mix(block.cast_unsigned() ^ mix(place));
-    let (one, two) = (uniform(mix(key)), uniform(mix(key ^ 0x9e37_79b9_7f4a_7c15)));
-    // Box and Muller, *Annals of Mathematical Statistics* 29 (1958) 610.
-    (-2.0 * one.ln()).sqrt() * (std::f64::consts::TAU * two).cos()
-}
-
-/// Above 0 and at most 1.
-#[allow(clippy::cast_precision_loss, reason = "53 bits are what a float holds")]
-fn uniform(bits: u64) -> f64 {
-    ((bits >> 11) + 1) as f64 / LARGEST_SEED
+    /// Every second 16 bits.
+    const EVEN: u64 = 0x0000_ffff_0000_ffff;
+    /// Mean and spread of the sum of eight whole numbers from 0 to 65 535: 8 · 65 535 / 2, and √(8 (65 536² − 1) / 12).
+    const MEAN: f64 = 262_140.0;
+    const SPREAD: f64 = 53_509.919_921_45;
+    let one = mix(seed ^ mix(block.cast_unsigned() ^ mix(place)));
+    let two = mix(one);
+    let pairs = (one & EVEN) + ((one >> 16) & EVEN) + (two & EVEN) + ((two >> 16) & EVEN);
+    #[allow(clippy::cast_precision_loss, reason = "it is less than 2^20")]
+    let sum = ((pairs & 0xffff_ffff) + (pairs >> 32)) as f64;
+    (sum - MEAN) / SPREAD
 }
 
 /// Mixes bits: Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA (2014).
@@ -164,6 +175,15 @@ mod tests {
             let expected = (-ahead_m / 0.5_f64).exp();
             assert!((covariance / variance - expected).abs() < 0.02, "{ahead_m}: {}", covariance / variance);
         }
+    }
+
+    #[test]
+    fn the_numbers_it_is_drawn_from_are_nearly_normal() {
+        let draws: Vec<f64> = (0..200_000).map(|place| normal(5, 3, place)).collect();
+        let mean_of = |power: i32| draws.iter().map(|x| x.powi(power)).sum::<f64>() / 200_000.0;
+        // Spread of the mean, of the variance and of the fourth moment: 0.0022, 0.0032 and 0.022.
+        assert!(mean_of(1).abs() < 0.007 && (mean_of(2) - 1.0).abs() < 0.01, "{} {}", mean_of(1), mean_of(2));
+        assert!((mean_of(4) - 2.85).abs() < 0.07, "{}", mean_of(4));
     }
 
     #[test]

@@ -48,6 +48,8 @@ pub enum Command {
     Diagnose(DiagnoseOptions),
     /// Rolling resistance and road loads from coast-downs
     Coastdown(CoastdownOptions),
+    /// Run many variants, cycles and grounds and compare them
+    Batch(BatchOptions),
     /// A built-in example that needs no file
     Demo(DemoOptions),
     /// Make `docs/validation.md` from the published recordings
@@ -145,6 +147,23 @@ pub struct CoastdownOptions {
     /// Samples slower than this are left out, m/s
     #[arg(long, value_name = "SPEED")]
     pub lowest_speed: Option<f64>,
+}
+
+/// Options of `headland batch`.
+#[derive(Args, Debug)]
+pub struct BatchOptions {
+    /// The comparison
+    #[arg(value_name = "COMPARISON.ron")]
+    pub comparison: PathBuf,
+    /// Where results are put; a batch that was interrupted there goes on
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Keep the trace of every run, in a folder a run
+    #[arg(long)]
+    pub traces: bool,
+    /// Throw away what is finished in the folder and begin again
+    #[arg(long)]
+    pub anew: bool,
 }
 
 /// Options of `headland demo`.

@@ -1,5 +1,6 @@
 //! How a command ends when it does not end well.
 
+use headland_batch::BatchError;
 use headland_calibrate::coastdown::CoastDownError;
 use headland_calibrate::study::StudyError;
 use headland_compare::CompareError;
@@ -60,6 +61,26 @@ impl Failure {
 impl From<ScenarioError> for Failure {
     fn from(error: ScenarioError) -> Self {
         Self::Input(error.told())
+    }
+}
+
+impl From<BatchError> for Failure {
+    fn from(error: BatchError) -> Self {
+        match error {
+            BatchError::Scenario(error) => error.into(),
+            BatchError::Combination { of, error } => Self::Input(format!("{of}:\n{}", error.told())),
+            BatchError::Another { .. } => Self::Input(format!(
+                "{error}\n  name another folder with --out, or throw away what is there with --anew"
+            )),
+            BatchError::TooMany { .. } | BatchError::Busy { .. } | BatchError::NoJournal { .. } => {
+                Self::Input(error.to_string())
+            }
+            BatchError::Interrupted => Self::Interrupted,
+            BatchError::Vanished { .. }
+            | BatchError::File { .. }
+            | BatchError::Table { .. }
+            | BatchError::Trace(_) => Self::Machine(error.to_string()),
+        }
     }
 }
 

@@ -17,6 +17,7 @@ mod failure;
 mod fitted;
 mod held;
 mod output;
+mod pace;
 mod page;
 mod picture;
 mod say;
@@ -78,6 +79,7 @@ fn begin(registry: &Registry, arguments: &Arguments, say: Say) -> Result<(), Fai
             command::diagnose::diagnose(registry, options, arguments.common.seed, say)
         }
         Command::Coastdown(options) => command::coastdown::coastdown(options, arguments.common.seed, say),
+        Command::Batch(options) => command::batch::batch(registry, options, arguments.common.seed, say),
         Command::Demo(options) => command::demo::demo(registry, options, arguments.common.seed, say),
         Command::Validate(options) => {
             command::validate::validate(registry, options, arguments.common.seed, say)

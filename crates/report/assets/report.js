@@ -269,7 +269,10 @@
   kinds.scatter = (spec, t, size) => {
     const names = spec.clouds.map((one) => one.name);
     const [key, keyHeight] = legend(names, size.width, t);
-    const series = spec.clouds.map((one, index) => ({
+    const series = spec.clouds.map((one, index) => one.joined ? ({
+      type: "line", name: one.name, symbol: "none", color: t.quiet, lineStyle: { color: t.quiet, width: 1.5, type: "dashed" }, z: 1,
+      data: one.x.map((x, at) => [x, one.y[at], null]),
+    }) : ({
       type: "scatter", name: one.name, symbol: ["circle", "triangle", "rect", "diamond"][index % 4], color: t.series[index % t.series.length],
       symbolSize: one.x.length > 800 ? 4 : 7, itemStyle: { opacity: 0.75 }, progressive: 0,
       data: one.x.map((x, at) => [x, one.y[at], one.colour ? one.colour[at] : null]),

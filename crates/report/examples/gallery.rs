@@ -250,6 +250,7 @@ fn awkward() -> Section {
         x: x.clone(),
         y: x.iter().map(|x| shift + (x * 1.7).sin()).collect(),
         colour: None,
+        joined: false,
     };
     Section::new("Awkward things")
         .with(Plot::new(

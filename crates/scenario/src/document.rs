@@ -21,9 +21,9 @@ pub struct Source {
 
 /// A stretch of the resolved text and where it was copied from.
 #[derive(Clone, Debug)]
-struct Segment {
+pub(crate) struct Segment {
     start: usize,
-    source: Arc<Source>,
+    pub(crate) source: Arc<Source>,
     origin: usize,
     /// Whether the stretch stands for the text at its origin rather than being a copy of it.
     replaced: bool,
@@ -33,10 +33,10 @@ struct Segment {
 #[derive(Clone, Debug)]
 pub struct Document {
     text: String,
-    segments: Vec<Segment>,
+    pub(crate) segments: Vec<Segment>,
     tree: Node,
     folder: PathBuf,
-    main: Arc<Source>,
+    pub(crate) main: Arc<Source>,
 }
 
 /// How deep includes may nest.
@@ -191,7 +191,7 @@ impl Document {
         builder.document(self.folder.clone(), Arc::clone(&self.main))
     }
 
-    fn copy(&self, builder: &mut Builder, range: Range<usize>) {
+    pub(crate) fn copy(&self, builder: &mut Builder, range: Range<usize>) {
         let mut at = range.start;
         let mut index = self.segments.partition_point(|segment| segment.start <= at).saturating_sub(1);
         while at < range.end {
@@ -235,13 +235,14 @@ fn paths_of(node: &Node, text: &str, name: &str, prefix: &str, found: &mut Vec<S
     }
 }
 
-struct Builder {
+#[derive(Default)]
+pub(crate) struct Builder {
     text: String,
     segments: Vec<Segment>,
 }
 
 impl Builder {
-    fn push(&mut self, text: &str, source: &Arc<Source>, origin: usize, replaced: bool) {
+    pub(crate) fn push(&mut self, text: &str, source: &Arc<Source>, origin: usize, replaced: bool) {
         if text.is_empty() {
             return;
         }
@@ -249,7 +250,7 @@ impl Builder {
         self.text.push_str(text);
     }
 
-    fn document(self, folder: PathBuf, main: Arc<Source>) -> Result<Document, ScenarioError> {
+    pub(crate) fn document(self, folder: PathBuf, main: Arc<Source>) -> Result<Document, ScenarioError> {
         let Self { text, segments } = self;
         match parse(&text) {
             Ok(tree) => Ok(Document { text, segments, tree, folder, main }),

@@ -5,6 +5,7 @@
 
 #![allow(clippy::result_large_err, reason = "a scenario is refused once, not in a loop")]
 
+mod assembled;
 mod candidate;
 mod cycle;
 #[cfg(test)]
@@ -23,6 +24,7 @@ mod schema;
 mod tree;
 mod until;
 
+pub use assembled::Piece;
 pub use candidate::{Candidate, CandidateField};
 pub use document::Document;
 pub use error::{Location, ScenarioError};

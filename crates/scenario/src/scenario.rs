@@ -106,6 +106,14 @@ impl Scenario {
     /// # Errors
     /// As [`Scenario::read`].
     pub fn of(document: Document, registry: &Registry) -> Result<Self, ScenarioError> {
+        Self::with_model(document, registry).map(|(scenario, _)| scenario)
+    }
+
+    /// The scenario of a document and its model, which is built once.
+    ///
+    /// # Errors
+    /// As [`Scenario::read`].
+    pub fn with_model(document: Document, registry: &Registry) -> Result<(Self, Model), ScenarioError> {
         let file = parse(&document)?;
         check_numbers(&document)?;
         let mut remarks = Vec::new();
@@ -137,7 +145,7 @@ impl Scenario {
         for run in &scenario.runs {
             scenario.run(run, registry)?;
         }
-        Ok(scenario)
+        Ok((scenario, built))
     }
 
     /// The model.

@@ -4,6 +4,7 @@ use crate::arguments::CheckOptions;
 use crate::command::run::told_remark;
 use crate::failure::{Failure, told_recording};
 use crate::say::Say;
+use headland_batch::{Comparison, Plan};
 use headland_plugin::Registry;
 use headland_scenario::{Document, Scenario};
 use serde::Serialize;
@@ -57,6 +58,7 @@ fn check_one(registry: &Registry, path: &Path) -> Checked {
         "recording" => headland_recording::check(path)
             .map(|check| (check.about, check.notices.iter().map(ToString::to_string).collect()))
             .map_err(|error| told_recording(&error)),
+        "comparison" => planned(registry, path).map_err(|failure| failure.to_string()),
         _ => Scenario::read(path, registry)
             .map(|scenario| (scenario.about.clone(), scenario.remarks.iter().map(told_remark).collect()))
             .map_err(|error| error.told()),
@@ -67,10 +69,18 @@ fn check_one(registry: &Registry, path: &Path) -> Checked {
     }
 }
 
+/// A comparison is checked with every scenario that it stands for.
+fn planned(registry: &Registry, path: &Path) -> Result<(String, Vec<String>), Failure> {
+    let plan = Plan::new(Comparison::read(path)?, registry, 0)?;
+    Ok((format!("{} ({} runs)", plan.comparison.about, plan.total()), Vec::new()))
+}
+
 /// A recording description has runs with files and no vehicle; everything else is meant as a scenario.
 fn kind_of(document: &Document) -> &'static str {
     let has = |key: &str| document.tree().field(key).is_some();
-    if has("channels") || has("format") || has("runs") && !has("vehicle") && !has("simulation") {
+    if Comparison::is(document) {
+        "comparison"
+    } else if has("channels") || has("format") || has("runs") && !has("vehicle") && !has("simulation") {
         "recording"
     } else {
         "scenario"

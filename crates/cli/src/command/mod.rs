@@ -1,5 +1,6 @@
 //! One file a command.
 
+pub mod batch;
 pub mod calibrate;
 pub mod check;
 pub mod coastdown;

@@ -1,5 +1,6 @@
 //! The pages that commands write.
 
+pub mod batch;
 pub mod calibrate;
 pub mod coastdown;
 pub mod compare;

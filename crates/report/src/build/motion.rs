@@ -76,6 +76,7 @@ pub fn residual_against(
         x: measured.require(against)?.to_vec(),
         y: residual,
         colour: Some(colour),
+        joined: false,
     };
     let y = Axis::new(format!("residual of {}", y.label), y.unit);
     Ok(Plot::new(title, Scatter { x, y, clouds: vec![cloud] }))

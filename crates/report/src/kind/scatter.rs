@@ -25,6 +25,8 @@ pub struct Cloud {
     pub y: Vec<f64>,
     /// Third values.
     pub colour: Option<Colour>,
+    /// Whether a line joins them, as it does a front; they then have no symbols of their own.
+    pub joined: bool,
 }
 
 /// Points over two axes.
@@ -63,6 +65,7 @@ impl Scatter {
                 let third = points.colour.as_ref().zip(colour.as_ref());
                 json!({
                     "name": points.name,
+                    "joined": points.joined,
                     "x": pick(&points.x, &x),
                     "y": pick(&points.y, &y),
                     "colour": third.map(|(colour, scale)| pick(&colour.values, scale)),
@@ -110,6 +113,7 @@ mod tests {
             x: vec![0.0, f64::NAN, 2.0],
             y: vec![1.0, 1.0, 5.0],
             colour: Some(colour),
+            joined: false,
         };
         let scatter = Scatter { x: Axis::of("speed_m_s"), y: Axis::of("force_n"), clouds: vec![cloud] };
         let drawn = scatter.draw("residual").unwrap();

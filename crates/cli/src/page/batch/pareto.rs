@@ -1,0 +1,91 @@
+//! Configurations by two measures at once, and those that no other beats in both.
+
+use super::{Content, IN_DETAIL, asked};
+use headland_batch::Choice;
+use headland_report::{Cloud, Plot, Scatter, Section};
+
+impl Content<'_> {
+    /// A plot for each cycle and ground; none where there is nothing to choose from.
+    pub(super) fn pareto(&self) -> Option<Section> {
+        let better = |index: &usize| self.summary.measures[*index].more_is_better();
+        let mut wanted = asked(self.plan, self.summary).into_iter().filter(|index| better(index).is_some());
+        let (x, y) = (wanted.next()?, wanted.next()?);
+        let sign = |index: usize| if better(&index) == Some(true) { -1.0 } else { 1.0 };
+        let mut section = Section::new("Choices").words(
+            "Each point is a configuration, the mean of its repetitions. No other configuration is better in both by the \
+             points on the line.",
+        );
+        if self.summary.one_choice_of > 1 {
+            section = section.with(headland_report::Item::Words(format!(
+                "One of {} configurations is shown; the table of results has all.",
+                self.summary.one_choice_of
+            )));
+        }
+        let mut plots = 0;
+        for (cycle, ground) in self.places().into_iter().take(IN_DETAIL) {
+            let here: Vec<&Choice> = self
+                .summary
+                .choices
+                .iter()
+                .filter(|choice| (choice.spec.cycle, choice.spec.ground) == (cycle, ground))
+                .filter(|choice| choice.measures[x].is_finite() && choice.measures[y].is_finite())
+                .collect();
+            if here.len() < 2 {
+                continue;
+            }
+            let cloud = |name: String, of: Vec<(f64, f64)>, joined: bool| {
+                let (x, y) = of.into_iter().unzip();
+                Cloud { name, x, y, colour: None, joined }
+            };
+            let at = |choice: &&Choice| (choice.measures[x], choice.measures[y]);
+            let mut clouds: Vec<Cloud> = Vec::new();
+            for variant in 0..self.plan.comparison.variants.len() {
+                let points: Vec<_> =
+                    here.iter().filter(|choice| choice.spec.variant == variant).map(at).collect();
+                if !points.is_empty() {
+                    clouds.push(cloud(self.variant(variant).to_owned(), points, false));
+                }
+            }
+            let points: Vec<(f64, f64)> = here.iter().map(at).collect();
+            clouds.push(cloud("not beaten".to_owned(), front(&points, (sign(x), sign(y))), true));
+            let title = format!(
+                "{} against {}: {}",
+                self.axis(y).label,
+                self.axis(x).label,
+                self.place(cycle, ground)
+            );
+            let scatter = Scatter { x: self.axis(x), y: self.axis(y), clouds };
+            section = section.with(Plot::new(super::capital(&title), scatter));
+            plots += 1;
+        }
+        (plots > 0).then_some(section)
+    }
+}
+
+/// The points that no other is better than in both, from left to right. A sign of −1 wants more.
+fn front(points: &[(f64, f64)], (sign_x, sign_y): (f64, f64)) -> Vec<(f64, f64)> {
+    let mut sorted: Vec<(f64, f64)> = points.iter().map(|(x, y)| (sign_x * x, sign_y * y)).collect();
+    sorted.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)));
+    let mut best = f64::INFINITY;
+    let mut front = Vec::new();
+    for (x, y) in sorted {
+        if y < best {
+            best = y;
+            front.push((sign_x * x, sign_y * y));
+        }
+    }
+    front
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_front_holds_what_nothing_beats() {
+        let points = [(1.0, 5.0), (2.0, 3.0), (2.0, 4.0), (3.0, 3.0), (4.0, 1.0), (5.0, 2.0)];
+        assert_eq!(front(&points, (1.0, 1.0)), [(1.0, 5.0), (2.0, 3.0), (4.0, 1.0)]);
+        assert_eq!(front(&points, (1.0, -1.0)), [(1.0, 5.0)]);
+        assert_eq!(front(&points, (-1.0, -1.0)), [(5.0, 2.0), (3.0, 3.0), (2.0, 4.0), (1.0, 5.0)]);
+    }
+}

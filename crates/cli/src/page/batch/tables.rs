@@ -1,0 +1,160 @@
+//! Tables of a batch: results, differences to the baseline, charge, runs without an end.
+
+use super::Content;
+use headland_batch::{Measure, Statistics};
+use headland_report::{Axis, Cell, Item, Section, Table};
+
+/// Columns of the table of results, as far as they are there.
+const COLUMNS: [Measure; 9] = [
+    Measure::Fuel,
+    Measure::Electricity,
+    Measure::Co2,
+    Measure::Time,
+    Measure::Area,
+    Measure::FuelPerHectare,
+    Measure::SpecificFuel,
+    Measure::FuelPerWork,
+    Measure::FuelPerDistance,
+];
+
+impl Content<'_> {
+    /// Every configuration with its numbers.
+    pub(super) fn results(&self) -> Table {
+        let present = self.summary.present();
+        let columns: Vec<usize> = COLUMNS
+            .iter()
+            .filter_map(|measure| self.summary.measures.iter().position(|other| other == measure))
+            .filter(|index| present.contains(index))
+            .collect();
+        let mut rows = Vec::new();
+        for (cycle, ground) in self.places() {
+            for variant in 0..self.plan.comparison.variants.len() {
+                let Some(cell) = self.cell(variant, (cycle, ground)) else { continue };
+                let mut row = vec![Cell::from(self.variant(variant)), Cell::from(self.place(cycle, ground))];
+                row.extend(columns.iter().map(|index| number(&cell.measures[*index])));
+                row.push(Cell::Number(cell.finished as f64));
+                rows.push(row);
+            }
+        }
+        let mut heads = vec![Axis::new("variant", ""), Axis::new("cycle", "")];
+        heads.extend(columns.iter().map(|index| self.axis(*index)));
+        heads.push(Axis::new("runs", ""));
+        Table {
+            title: "Results, mean (one standard deviation to either side)".to_owned(),
+            columns: heads,
+            rows,
+        }
+    }
+
+    /// Differences to the baseline in per cent, paired.
+    pub(super) fn differences(&self, asked: &[usize]) -> Option<Table> {
+        let base = self.plan.comparison.baseline?;
+        let mut rows = Vec::new();
+        for (cycle, ground) in self.places() {
+            for variant in (0..self.plan.comparison.variants.len()).filter(|variant| *variant != base) {
+                let Some(cell) = self.cell(variant, (cycle, ground)) else { continue };
+                let share = |index: &usize| {
+                    let mut scaled = cell.against[*index];
+                    scaled.scale(100.0);
+                    number(&scaled)
+                };
+                let mut row = vec![Cell::from(self.variant(variant)), Cell::from(self.place(cycle, ground))];
+                row.extend(asked.iter().map(share));
+                rows.push(row);
+            }
+        }
+        if rows.is_empty() {
+            return None;
+        }
+        let mut columns = vec![Axis::new("variant", ""), Axis::new("cycle", "")];
+        columns.extend(asked.iter().map(|index| Axis::new(self.axis(*index).label, "%")));
+        let title =
+            format!("Against {}, run by run (one standard deviation of the difference)", self.variant(base));
+        Some(Table { title, columns, rows })
+    }
+
+    /// What the charge of electric stores did, and how fuel is told at the same charge.
+    pub(super) fn charge(&self) -> Option<Section> {
+        let charged = |cell: &&headland_batch::Cell| cell.charge.count > 0;
+        if !self.summary.cells.iter().any(|cell| charged(&cell)) {
+            return None;
+        }
+        let words = match self.plan.comparison.accounting.charge {
+            Some(charge) => format!(
+                "Fuel and what follows from it are told at the charge that the run began with. What the store gave is \
+                 charged by the engine with an efficiency of {}, what it gained replaces work of the engine with {}, both \
+                 at the engine's mean consumption in the same run: m + (ΔE / η) (m / W). This is the correction of \
+                 ISO 23274-1 and SAE J1711 with a stated efficiency in the place of their tolerance. The line through \
+                 runs that end at different charges, fuel over energy of the store, is an independent value where there \
+                 are such runs.",
+                charge.charging_efficiency, charge.discharging_efficiency
+            ),
+            None => "The comparison does not say how a change of charge is made up for (`charge`), so the fuel of a run \
+                     that ends at another charge than it began with is not compared."
+                .to_owned(),
+        };
+        let fuel = self.summary.measures.iter().position(|measure| *measure == Measure::Fuel)?;
+        let density = self.plan.comparison.accounting.fuel.map(|fuel| fuel.density_kg_m3);
+        let rows = self.summary.cells.iter().filter(charged).map(|cell| {
+            let line = cell.fuel_over_store.fit();
+            let at_zero = line.map_or(f64::NAN, |(at_zero, _, _)| {
+                density.map_or(at_zero, |density| 1e3 * at_zero / density)
+            });
+            let mut change = cell.charge;
+            change.scale(100.0);
+            vec![
+                Cell::from(self.variant(cell.variant)),
+                Cell::from(self.place(cell.cycle, cell.ground)),
+                number(&change),
+                number(&cell.measures[fuel]),
+                Cell::Number(at_zero),
+                Cell::Number(line.map_or(f64::NAN, |(_, _, share)| share)),
+            ]
+        });
+        let axis = self.axis(fuel);
+        let columns = vec![
+            Axis::new("variant", ""),
+            Axis::new("cycle", ""),
+            Axis::new("change of charge", "%"),
+            Axis::new("fuel at the same charge", axis.unit.clone()),
+            Axis::new("by the line", axis.unit),
+            Axis::new("R² of the line", ""),
+        ];
+        let table = Table { title: "Charge".to_owned(), columns, rows: rows.collect() };
+        Some(Section::new("State of charge").words(words).with(table))
+    }
+
+    /// Runs that did not reach the end of their cycle.
+    pub(super) fn troubles(&self) -> Option<Section> {
+        let troubles = &self.summary.troubles;
+        if troubles.is_empty() {
+            return None;
+        }
+        let sentences = troubles
+            .iter()
+            .map(|(number, status, error)| {
+                format!("{}: {}: {error}", self.plan.called(self.plan.spec(*number)), status.name())
+            })
+            .collect();
+        let words = if (troubles.len() as u64) < self.summary.unfinished {
+            format!(
+                "The first {} of {}; the table of results has all.",
+                troubles.len(),
+                self.summary.unfinished
+            )
+        } else {
+            "They are left out of all means and differences; the table of results has their rows.".to_owned()
+        };
+        Some(Section::new("Runs without an end").words(words).with(Item::Sentences(sentences)))
+    }
+}
+
+/// A mean, with one standard deviation to either side where there is one.
+fn number(value: &Statistics) -> Cell {
+    let deviation = value.deviation();
+    if deviation > 0.0 {
+        Cell::Interval { value: value.mean, lower: value.mean - deviation, upper: value.mean + deviation }
+    } else {
+        Cell::Number(value.mean)
+    }
+}

@@ -1,6 +1,7 @@
 //! Every scenario of the project, read and driven.
 
 use crate::{files_below, root};
+use headland_batch::{Comparison, Plan, Status};
 use headland_scenario::Scenario;
 use headland_sim::{End, simulate};
 use std::path::PathBuf;
@@ -37,10 +38,37 @@ fn every_scenario_reads_without_a_remark_and_runs_to_its_end() {
     }
 }
 
+/// Every comparison of the project: its scenarios read, and the first run of each configuration reaches its end.
+#[test]
+fn every_comparison_reads_and_each_of_its_configurations_runs_to_the_end() {
+    let registry = headland_stock::registry();
+    let files = files_below(&root().join("scenarios/comparisons"));
+    assert!(!files.is_empty());
+    for path in files {
+        let name = path.display();
+        let comparison = Comparison::read(&path).unwrap_or_else(|error| panic!("{name}: {}", error.told()));
+        let plan = Plan::new(comparison, &registry, 1).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let runs = plan.points() * u64::from(plan.comparison.times);
+        for number in (0..plan.total()).step_by(usize::try_from(runs).unwrap()) {
+            let (row, _) = headland_batch::run(&plan, &registry, number);
+            assert_eq!(
+                row.status,
+                Status::Finished,
+                "{name}: {}: {}",
+                plan.called(plan.spec(number)),
+                row.error
+            );
+        }
+    }
+}
+
 /// What a scenario includes has to be used by one.
 #[test]
 fn every_piece_is_included_by_a_scenario() {
-    let texts: Vec<String> = scenarios().iter().map(|path| std::fs::read_to_string(path).unwrap()).collect();
+    let mut files = scenarios();
+    files.extend(files_below(&root().join("scenarios/comparisons")));
+    let texts: Vec<String> =
+        files.iter().map(|path| std::fs::read_to_string(path).unwrap().replace("\"../", "\"")).collect();
     for folder in ["vehicles", "grounds"] {
         for path in files_below(&root().join("scenarios").join(folder)) {
             let include = format!("\"{folder}/{}\"", path.file_name().unwrap().to_string_lossy());

@@ -4,6 +4,7 @@
 //! to be RON and no more.
 
 use crate::{Block, blocks, root};
+use headland_batch::{Comparison, Plan, Status};
 use headland_scenario::{Document, Scenario};
 use headland_sim::{End, simulate};
 
@@ -16,7 +17,7 @@ fn of_mark(mark: &str) -> Vec<Block> {
 #[test]
 fn every_ron_block_says_what_it_is() {
     for block in blocks().iter().filter(|block| block.mark.starts_with("ron")) {
-        let known = ["ron", "ron scenario", "ron recording"].contains(&block.mark.as_str());
+        let known = ["ron", "ron scenario", "ron comparison", "ron recording"].contains(&block.mark.as_str());
         assert!(known, "{}:{}: `{}`", block.page, block.line, block.mark);
     }
 }
@@ -39,6 +40,23 @@ fn every_scenario_of_the_documentation_reads_and_runs() {
             let Some(cycle) = &scenario.cycle else { continue };
             let outcome = simulate(&scenario.model(&registry).unwrap(), cycle).unwrap();
             assert_eq!(outcome.end, End::Finished, "{name}");
+        }
+    }
+}
+
+/// As if the block lay in `scenarios/`: every scenario that it stands for reads, and the first run of each ends well.
+#[test]
+fn every_comparison_of_the_documentation_reads_and_runs() {
+    let registry = headland_stock::registry();
+    for block in of_mark("ron comparison") {
+        let name = format!("{}:{}", block.page, block.line);
+        let comparison = Comparison::of_text(&name, &block.text, &root().join("scenarios"))
+            .unwrap_or_else(|error| panic!("{name}: {}", error.told()));
+        let plan = Plan::new(comparison, &registry, 1).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let runs = plan.points() * u64::from(plan.comparison.times);
+        for number in (0..plan.total()).step_by(usize::try_from(runs).unwrap()) {
+            let (row, _) = headland_batch::run(&plan, &registry, number);
+            assert_eq!(row.status, Status::Finished, "{name}: {}", row.error);
         }
     }
 }

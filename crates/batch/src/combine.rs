@@ -1,7 +1,7 @@
 //! Scenarios put together from a comparison: what is common, a variant, a cycle and a ground.
 
 use crate::comparison::Comparison;
-use crate::entry::Entry;
+use crate::entry::{Change, Entry};
 use headland_scenario::{Document, Node, Piece, ScenarioError, Shape};
 use std::ops::Range;
 
@@ -71,14 +71,37 @@ impl Comparison {
         pieces.push(Piece::Own(")\n".to_owned()));
         let mut scenario = document.assembled(&pieces)?;
         for change in variant.with.iter().chain(&cycle.with).chain(&ground.with) {
-            let Some(node) = scenario.find(&change.path) else {
-                return Err(nowhere(document, &change.path, change.at, (variant, cycle, ground)));
-            };
-            let edit = (node.span.clone(), Piece::Of(document, change.value.clone()));
-            scenario = scenario.edited(vec![edit])?;
+            scenario = changed(document, &scenario, change)?
+                .ok_or_else(|| nowhere(document, &change.path, change.at, (variant, cycle, ground)))?;
         }
         Ok(scenario)
     }
+}
+
+/// The scenario with one other value; `None` where it has no such place.
+fn changed(
+    document: &Document,
+    scenario: &Document,
+    change: &Change,
+) -> Result<Option<Document>, ScenarioError> {
+    let value = Piece::Of(document, change.value.clone());
+    if let Some(node) = scenario.find(&change.path) {
+        return scenario.edited(vec![(node.span.clone(), value)]).map(Some);
+    }
+    let Some((owner, field)) = change.path.rsplit_once('.').filter(|_| change.adds) else { return Ok(None) };
+    let Some(Node { shape: Shape::Struct { fields, .. }, .. }) = scenario.find(owner) else {
+        return Ok(None);
+    };
+    let Some(last) = fields.last() else { return Ok(None) };
+    let behind = last.value.span.end..last.value.span.end;
+    let text = scenario.text();
+    let pieces = [
+        Piece::Of(scenario, 0..behind.start),
+        Piece::Own(format!(", {field}: ")),
+        value,
+        Piece::Of(scenario, behind.end..text.len()),
+    ];
+    scenario.assembled(&pieces).map(Some)
 }
 
 /// A path that leads nowhere in a combination.

@@ -29,6 +29,8 @@ pub(crate) struct Change {
     pub value: Range<usize>,
     /// Where the path stands.
     pub at: usize,
+    /// Whether it may be a field that the piece does not have yet.
+    pub adds: bool,
 }
 
 /// A kind of entries.
@@ -133,14 +135,18 @@ fn changes(document: &Document, kind: &KindOf, node: &Node) -> Result<Vec<Change
                 path: format!("{}.{}", kind.field, field.key),
                 value: field.value.span.clone(),
                 at: field.key_span.start,
+                adds: true,
             })
             .collect()),
         Shape::Map(entries) => entries
             .iter()
             .map(|(key, value)| match &key.shape {
-                Shape::Text(path) => {
-                    Ok(Change { path: path.clone(), value: value.span.clone(), at: key.span.start })
-                }
+                Shape::Text(path) => Ok(Change {
+                    path: path.clone(),
+                    value: value.span.clone(),
+                    at: key.span.start,
+                    adds: false,
+                }),
                 _ => Err(expected(document, key, "with", "a dotted path in quotes")),
             })
             .collect(),

@@ -77,7 +77,8 @@ fn seeds_of_models_change_with_the_repetition_and_not_with_the_variant() {
 fn mistakes_are_refused_where_they_stand() {
     for (from, to, told, line) in [
         ("\"heavy\"", "\"light\"", "\"light\" for the second time", 5),
-        ("with: (mass_kg:", "with: (mass:", "not there in variant `heavy`", 5),
+        ("with: (mass_kg:", "with: {\"vehicle.mass\":", "not there in variant `heavy`", 5),
+        ("with: (mass_kg:", "with: (mass:", "`vehicle` has no field `mass`", 5),
         ("{\"ground.soil.coefficient\": [", "{\"ground.soil.c\": [", "not there in variant `light`", 11),
         ("times: 2", "times: 0", "`times` is 0", 12),
         ("{\"start.speed_m_s\"", "{\"ground.soil\"", "no number", 12),
@@ -85,7 +86,8 @@ fn mistakes_are_refused_where_they_stand() {
         ("repeat:", "report: (baseline: \"middle\"), repeat:", "no variant is named `middle`", 12),
         ("mass_kg: 500", "mass_kg: -5", "`mass_kg` is -5", 4),
     ] {
-        let text = COMPARISON.replacen(from, to, 1);
+        let text =
+            COMPARISON.replacen(from, to, 1).replace("{\"vehicle.mass\": \"1 t\")", "{\"vehicle.mass\": 1})");
         let error = plan(&text).unwrap_err();
         assert!(error.to_string().contains(told), "{to}: {error}");
         let (BatchError::Scenario(error) | BatchError::Combination { error, .. }) = error else {

@@ -22,7 +22,7 @@ fn outcome(channels: &[(&str, Vec<f64>)], source: &str, accounts: &[(&str, f64)]
         .collect();
     let ledger =
         Ledger { source_name: source.to_owned(), source_j: 5e6, kinetic_j: 0.0, sinks, residual_j: 1e-3 };
-    Outcome { trace, ledger, end: End::Finished, steps: 2 }
+    Outcome { trace, ledger, end: End::Finished, steps: 2, phases: Vec::new() }
 }
 
 /// Rates 0.001, 0.003, 0.002 kg/s: 10·0.002 + 20·0.0025 = 0.07 kg. Shaft: 200 rad/s times 100, 300, 200 N m: 1.4 MJ.

@@ -19,7 +19,7 @@ pub struct Cell {
     pub cycle: usize,
     /// Index of the ground.
     pub ground: usize,
-    /// Runs that reached the end of the cycle; all statistics are of them.
+    /// Runs that reached the end of the cycle; all statistics are of them, less those in which one parameter is varied.
     pub finished: u64,
     /// Runs that did not.
     pub unfinished: u64,
@@ -178,15 +178,22 @@ impl Gathered {
         }
         let all: Vec<f64> =
             self.measures.iter().map(|measure| measure.of(row, &comparison.accounting)).collect();
-        self.cells[index].take(row, &all);
+        // Where parameters are varied one by one, a configuration is what is written, not its variations.
+        let varied = comparison.points.end_of(spec.point);
+        if varied.is_none() {
+            self.cells[index].take(row, &all);
+        }
+        self.cells[index].finished += 1;
         self.choose(plan, spec, &all);
-        if let Some(base) = comparison.baseline.filter(|base| *base != spec.variant) {
+        if varied.is_none()
+            && let Some(base) = comparison.baseline.filter(|base| *base != spec.variant)
+        {
             let base = plan.number(Spec { variant: base, ..spec });
             if let Some(shares) = self.shares(plan, journal, base, &all)? {
                 self.cells[index].against.iter_mut().zip(shares).for_each(|(one, share)| one.add(share));
             }
         }
-        if let Some((parameter, end)) = comparison.points.end_of(spec.point) {
+        if let Some((parameter, end)) = varied {
             let middle = spec.point - (1 + 2 * parameter + end) as u64;
             let middle = plan.number(Spec { point: middle, ..spec });
             if let Some(shares) = self.shares(plan, journal, middle, &all)? {
@@ -313,7 +320,6 @@ impl Gathered {
 
 impl Cell {
     fn take(&mut self, row: &Row, all: &[f64]) {
-        self.finished += 1;
         self.measures.iter_mut().zip(all).for_each(|(one, value)| one.add(*value));
         for (name, energy_j) in &row.values {
             let Some(account) = account_of_column(name) else { continue };

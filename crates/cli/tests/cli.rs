@@ -3,6 +3,9 @@
 
 #[path = "cli/bad_input.rs"]
 mod bad_input;
+#[cfg(unix)]
+#[path = "cli/batch.rs"]
+mod batch;
 #[path = "cli/commands.rs"]
 mod commands;
 #[path = "cli/help.rs"]

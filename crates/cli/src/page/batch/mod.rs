@@ -49,16 +49,15 @@ pub fn page(plan: &Plan, summary: &Summary, registry: &Registry) -> Result<Repor
     let content = Content { plan, summary };
     let lede = format!("{}. {}", counted(plan), content.verdict());
     let mut report = Report::new(plan.comparison.about.clone(), lede).with(content.overview());
-    for section in [
+    let parts = [
         content.energy(registry)?,
         content.pareto(),
         content.sensitivity(),
         content.charge(),
         content.troubles(),
-    ] {
-        if let Some(section) = section {
-            report = report.with(section);
-        }
+    ];
+    for section in parts.into_iter().flatten() {
+        report = report.with(section);
     }
     Ok(report)
 }

@@ -1,0 +1,304 @@
+//! A batch survives whatever ends it: killed, interrupted, a full disk, a folder that is gone.
+
+use super::help::{Place, headland};
+use std::io::Write;
+use std::os::unix::process::CommandExt;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+/// Carts that roll out; with the points below some hundred runs of some milliseconds.
+const COMPARISON: &str = r#"(
+    about: "carts",
+    variants: [(name: "light", with: {"vehicle.mass_kg": 500}), (name: "heavy", with: {"vehicle.mass_kg": 2000})],
+    cycles: [(name: "roll", cycle: [Coast(until: Elapsed(for_s: 100))])],
+    vehicle: (name: "cart", mass_kg: 1000, rotating_mass_kg: 0, drag_area_m2: 2, driveline: Neutral),
+    ground: (terrain: Flat, soil: LinearSpeedLaw(coefficient: 0.002, speed_scale_m_s: 20)),
+    air: (density_kg_m3: 1.2),
+    start: (position_m: 0, speed_m_s: 10),
+    sweep: {"vehicle.drag_area_m2": [1.0, 2.0]},
+    sample: (count: 20, seed: 3, of: {"start.speed_m_s": (8, 12)}),
+    repeat: (times: 4, seed: 1, scatter: {"ground.soil.coefficient": Share(0.1)}),
+    simulation: (fidelity: Longitudinal, step_s: 0.01),
+)"#;
+const RUNS: u64 = 2 * 2 * 20 * 4;
+
+fn place(text: &str) -> Place {
+    let place = Place::new();
+    place.write("comparison.ron", text);
+    place
+}
+
+fn batch(place: &Place, out: &str, more: &[&str]) -> Command {
+    let mut command = headland();
+    command.args(["batch", &place.path("comparison.ron"), "--out", &place.path(out)]).args(more);
+    command.stdout(Stdio::null()).stderr(Stdio::piped());
+    command
+}
+
+fn output(mut command: Command) -> Output {
+    command.stdout(Stdio::piped()).output().unwrap()
+}
+
+fn status(command: Command) -> (Option<i32>, String) {
+    let output = output(command);
+    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+fn bytes(place: &Place, name: &str) -> Vec<u8> {
+    std::fs::read(place.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// What an uninterrupted batch leaves, on one thread.
+fn reference(place: &Place) -> [Vec<u8>; 3] {
+    let (code, told) = status(batch(place, "reference", &["--threads", "1"]));
+    assert_eq!(code, Some(0), "{told}");
+    ["results.parquet", "summary.json", "report.html"].map(|name| bytes(place, &format!("reference/{name}")))
+}
+
+fn same_as(place: &Place, out: &str, reference: &[Vec<u8>; 3]) {
+    for (name, expected) in ["results.parquet", "summary.json", "report.html"].iter().zip(reference) {
+        assert!(bytes(place, &format!("{out}/{name}")) == *expected, "{name} of {out} differs");
+    }
+    let length = |out: &str| bytes(place, &format!("{out}/journal.headland")).len();
+    assert_eq!(length(out), length("reference"), "a run stands in the journal twice, or not at all");
+}
+
+#[test]
+fn results_are_the_same_bytes_at_any_number_of_threads() {
+    let place = place(COMPARISON);
+    let reference = reference(&place);
+    for threads in ["2", "5"] {
+        let out = format!("out{threads}");
+        assert_eq!(status(batch(&place, &out, &["--threads", threads])).0, Some(0));
+        same_as(&place, &out, &reference);
+    }
+    assert_eq!(status(batch(&place, "other", &["--seed", "2"])).0, Some(0));
+    assert!(bytes(&place, "other/results.parquet") != reference[0], "the seed of the command line counts");
+}
+
+/// The runs that the journal held when it was opened.
+fn already(told: &str) -> u64 {
+    let line = told.lines().find(|line| line.contains("finished already"));
+    line.map_or(0, |line| line.split(' ').next().unwrap().parse().unwrap())
+}
+
+/// Killed at moments that differ from time to time, with no chance to tidy up.
+#[test]
+fn killed_at_any_moment_it_goes_on_without_losing_or_repeating_a_run() {
+    let place = place(COMPARISON);
+    let begin = Instant::now();
+    let reference = reference(&place);
+    let whole = begin.elapsed();
+    let (mut kept, mut killed, mut state) = (0, 0, 88_172_645_463_325_252_u64);
+    let mut longest = whole.mul_f64(0.3);
+    loop {
+        let mut child = batch(&place, "out", &["--threads", "2"]).spawn().unwrap();
+        // Moments drawn by an xorshift generator.
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        std::thread::sleep(longest.mul_f64((state % 1000) as f64 / 1000.0).max(Duration::from_millis(2)));
+        child.kill().unwrap();
+        let output = child.wait_with_output().unwrap();
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!told.contains("error"), "{told}");
+        // One that is killed before it has read its journal tells nothing.
+        let found = already(&told);
+        assert!(found >= kept || found == 0, "{kept} runs were finished, then {told}");
+        kept = kept.max(found);
+        killed += u32::from(!output.status.success());
+        if output.status.success() {
+            if killed > 2 {
+                break;
+            }
+            // The machine was too fast for the moments: again, sooner.
+            std::fs::remove_dir_all(place.path("out")).unwrap();
+            (kept, killed, longest) = (0, 0, longest.mul_f64(0.5));
+        }
+    }
+    eprintln!("killed {killed} times");
+    let (code, told) = status(batch(&place, "out", &[]));
+    assert_eq!((code, already(&told)), (Some(0), RUNS), "{told}");
+    same_as(&place, "out", &reference);
+}
+
+#[test]
+fn a_torn_journal_goes_on_behind_its_last_whole_record() {
+    let place = place(COMPARISON);
+    let reference = reference(&place);
+    assert_eq!(status(batch(&place, "out", &[])).0, Some(0));
+    let whole = bytes(&place, "out/journal.headland");
+    for keep in [5, 60, whole.len() / 3, whole.len() - 1] {
+        std::fs::write(place.path("out/journal.headland"), &whole[..keep]).unwrap();
+        assert_eq!(status(batch(&place, "out", &[])).0, Some(0));
+        same_as(&place, "out", &reference);
+    }
+    let mut file = std::fs::OpenOptions::new().append(true).open(place.path("out/journal.headland")).unwrap();
+    file.write_all(&[7; 100]).unwrap();
+    let (code, told) = status(batch(&place, "out", &[]));
+    assert!(code == Some(0) && told.contains("100 bytes"), "{told}");
+    same_as(&place, "out", &reference);
+}
+
+fn interrupted(mut child: Child, after: Duration) -> Option<i32> {
+    std::thread::sleep(after);
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    child.wait().unwrap().code()
+}
+
+#[test]
+fn an_interruption_is_130_and_the_same_command_goes_on() {
+    let place = place(COMPARISON);
+    let reference = reference(&place);
+    for wait_ms in [300, 150, 80, 40, 600] {
+        let _ = std::fs::remove_dir_all(place.path("out"));
+        let child = batch(&place, "out", &["--threads", "1"]).spawn().unwrap();
+        if interrupted(child, Duration::from_millis(wait_ms)) == Some(130) {
+            assert!(!Path::new(&place.path("out/results.parquet")).exists(), "no table of half a batch");
+            assert_eq!(status(batch(&place, "out", &[])).0, Some(0));
+            same_as(&place, "out", &reference);
+            return;
+        }
+    }
+    panic!("it was never interrupted in time");
+}
+
+/// A run that cannot be driven, one that is not physical and a good one: rows, and status 1.
+#[test]
+fn a_run_that_fails_is_a_row_with_its_error() {
+    let text = COMPARISON
+        .replace("\"vehicle.drag_area_m2\": [1.0, 2.0]", "\"cycle\": [[Coast(until: Elapsed(for_s: 5))], [Hold(for_s: 5)], [Coast(until: Travelled(distance_m: 1e5))]], \"vehicle.drag_area_m2\": [1.0, -1.0]")
+        .replace("count: 20", "count: 1")
+        .replace("times: 4", "times: 1");
+    let place = place(&text);
+    let (code, told) = status(batch(&place, "out", &[]));
+    assert_eq!(code, Some(1), "{told}");
+    assert!(told.contains("8 of 12 runs have no end"), "{told}");
+    let summary = place.json("out/summary.json");
+    let errors: Vec<&str> =
+        summary["troubles"].as_array().unwrap().iter().map(|one| one["error"].as_str().unwrap()).collect();
+    assert!(errors.iter().any(|error| error.contains("`drag_area_m2` is -1, expected")), "{errors:?}");
+    assert!(errors.iter().any(|error| error.contains("come to rest") && error.contains(" m)")), "{errors:?}");
+}
+
+/// A file that may not grow stands for a full disk: the shell limits its size, and the signal of the limit is ignored.
+#[test]
+fn a_full_disk_is_3_and_loses_nothing_that_was_finished() {
+    let place = place(COMPARISON);
+    let reference = reference(&place);
+    let script = format!(
+        "trap '' XFSZ; ulimit -f 32; exec {} batch {} --out {}",
+        env!("CARGO_BIN_EXE_headland"),
+        place.path("comparison.ron"),
+        place.path("out")
+    );
+    let mut command = Command::new("bash");
+    command.args(["-c", &script]);
+    let (code, told) = status(command);
+    assert_eq!(code, Some(3), "{told}");
+    assert!(told.contains("runs are finished and kept; the same command goes on"), "{told}");
+    let (code, told) = status(batch(&place, "out", &[]));
+    assert!(code == Some(0) && already(&told) > 20, "{told}");
+    same_as(&place, "out", &reference);
+}
+
+#[test]
+fn a_folder_that_vanishes_is_3_and_is_made_again() {
+    let place = place(COMPARISON);
+    let reference = reference(&place);
+    for wait_ms in [150, 80, 300, 40, 600] {
+        let child = batch(&place, "out", &["--threads", "1"]).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(wait_ms));
+        let _ = std::fs::remove_dir_all(place.path("out"));
+        let output = child.wait_with_output().unwrap();
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        if output.status.code() == Some(3) && told.contains("made again") {
+            let (code, told) = status(batch(&place, "out", &[]));
+            assert!(code == Some(0) && already(&told) > 0, "{told}");
+            same_as(&place, "out", &reference);
+            return;
+        }
+        let _ = std::fs::remove_dir_all(place.path("out"));
+    }
+    panic!("the folder never vanished while runs were written");
+}
+
+#[test]
+fn a_changed_comparison_is_refused_with_what_changed_and_begins_anew_when_told() {
+    let place = place(&COMPARISON.replace("count: 20", "count: 2"));
+    assert_eq!(status(batch(&place, "out", &[])).0, Some(0));
+    let before = bytes(&place, "out/results.parquet");
+    let remark = COMPARISON
+        .replace("count: 20", "count: 2")
+        .replace("about: \"carts\"", "// a remark\n about: \"wagons\"");
+    place.write("comparison.ron", &remark);
+    let (code, told) = status(batch(&place, "out", &[]));
+    assert!(code == Some(0) && already(&told) == 32, "what no result depends on may change: {told}");
+    place.write(
+        "comparison.ron",
+        &remark.replace(
+            "\"heavy\", with: {\"vehicle.mass_kg\": 2000",
+            "\"heavy\", with: {\"vehicle.mass_kg\": 2500",
+        ),
+    );
+    let (code, told) = status(batch(&place, "out", &[]));
+    assert_eq!(code, Some(2), "{told}");
+    assert!(
+        told.contains("variant `heavy` changed") && told.contains("--anew") && !told.contains("`light`"),
+        "{told}"
+    );
+    assert!(bytes(&place, "out/results.parquet") == before);
+    assert_eq!(status(batch(&place, "out", &["--anew"])).0, Some(0));
+    assert!(bytes(&place, "out/results.parquet") != before);
+}
+
+#[test]
+fn traces_are_kept_and_made_up_for_where_they_are_missing() {
+    let place = place(&COMPARISON.replace("count: 20", "count: 1").replace("times: 4", "times: 1"));
+    assert_eq!(status(batch(&place, "out", &[])).0, Some(0));
+    let before = bytes(&place, "out/results.parquet");
+    assert_eq!(status(batch(&place, "out", &["--traces"])).0, Some(0));
+    let trace = bytes(&place, "out/runs/000002/trace.parquet");
+    std::fs::write(place.path("out/runs/000002/trace.parquet"), "").unwrap();
+    assert_eq!(status(batch(&place, "out", &["--traces"])).0, Some(0));
+    assert!(bytes(&place, "out/runs/000002/trace.parquet") == trace);
+    assert!(bytes(&place, "out/results.parquet") == before);
+    let runs = headland_trace::read_parquet(Path::new(&place.path("out/runs/000003/trace.parquet"))).unwrap();
+    assert!((runs[0].trace.duration_s() - 100.0).abs() < 1e-6);
+}
+
+#[test]
+fn the_result_is_one_json_document_and_quiet_is_quiet() {
+    let place = place(&COMPARISON.replace("count: 20", "count: 1"));
+    let output = output(batch(&place, "out", &["--json", "--quiet"]));
+    assert!(output.status.success() && output.stderr.is_empty());
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(
+        (document["schema"].as_str(), document["runs"].as_u64()),
+        (Some("headland.batch/1"), Some(16))
+    );
+    let heavy = &document["configurations"][1];
+    assert_eq!(heavy["variant"], "heavy");
+    let time = heavy["measures"].as_array().unwrap().iter().find(|one| one["name"] == "time").unwrap();
+    assert_eq!(time["against_baseline"]["pairs"], 8, "{heavy}");
+}
+
+/// Two at once would write one journal.
+#[test]
+fn a_second_batch_in_the_same_folder_is_refused() {
+    let place = place(COMPARISON);
+    let mut first = batch(&place, "out", &["--threads", "1"]);
+    first.process_group(0);
+    let mut first = first.spawn().unwrap();
+    for _ in 0..200 {
+        if Path::new(&place.path("out/journal.headland")).exists() {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    std::thread::sleep(Duration::from_millis(30));
+    let (code, told) = status(batch(&place, "out", &[]));
+    assert!(code == Some(2) && told.contains("another batch is at work"), "{told}");
+    assert!(first.wait().unwrap().success());
+}

@@ -97,7 +97,9 @@ fn changed(
     let text = scenario.text();
     let pieces = [
         Piece::Of(scenario, 0..behind.start),
-        Piece::Own(format!(", {field}: ")),
+        Piece::Own(", ".to_owned()),
+        Piece::Of(document, change.at..change.at + field.len()),
+        Piece::Own(": ".to_owned()),
         value,
         Piece::Of(scenario, behind.end..text.len()),
     ];

@@ -87,7 +87,7 @@ fn mistakes_are_refused_where_they_stand() {
         ("mass_kg: 500", "mass_kg: -5", "`mass_kg` is -5", 4),
     ] {
         let text =
-            COMPARISON.replacen(from, to, 1).replace("{\"vehicle.mass\": \"1 t\")", "{\"vehicle.mass\": 1})");
+            COMPARISON.replacen(from, to, 1).replace("{\"vehicle.mass\": \"1 t\")", "{\"vehicle.mass\": 1}");
         let error = plan(&text).unwrap_err();
         assert!(error.to_string().contains(told), "{to}: {error}");
         let (BatchError::Scenario(error) | BatchError::Combination { error, .. }) = error else {

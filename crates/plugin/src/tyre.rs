@@ -31,6 +31,11 @@ impl Tyre {
         0.0008 + 0.001 * (0.365 + 170.0 / p) * w
     }
 
+    /// Load per deflection on hard ground [N/m]: the measured one, or the slope of the rule that stands in for it.
+    pub fn stiffness_n_per_m(&self) -> f64 {
+        self.stiffness_n_per_m.unwrap_or_else(|| 1e6 / (0.365 + 170.0 / (self.inflation_pa / 1e3)))
+    }
+
     /// Height of the hub above hard ground [m].
     pub fn loaded_radius_m(&self, load_n: f64) -> f64 {
         0.5 * self.diameter_m - self.deflection_m(load_n)
@@ -66,5 +71,8 @@ mod tests {
     fn a_measured_stiffness_takes_the_place_of_the_rule() {
         let tyre = Tyre { stiffness_n_per_m: Some(6e5), ..TYRE };
         assert!((tyre.deflection_m(30_000.0) - 0.05).abs() < 1e-12);
+        assert_eq!(tyre.stiffness_n_per_m(), 6e5);
+        let slope = (TYRE.deflection_m(31e3) - TYRE.deflection_m(30e3)) / 1e3;
+        assert!((slope * TYRE.stiffness_n_per_m() - 1.0).abs() < 1e-9);
     }
 }

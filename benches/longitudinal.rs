@@ -158,6 +158,7 @@ fn model(driveline: &str, parameters: &str) -> Model {
             temperature_c: f64::NAN,
         },
         terrain: registry.terrains.build("Flat", &terrain, here).expect("a terrain"),
+        axles: None,
         soil: Some(registry.soils.build("LinearSpeedLaw", &soil, here).expect("a soil")),
         driveline: registry.drivelines.build(driveline, parameters, here).expect("a driveline"),
         tasks: Vec::new(),

@@ -14,6 +14,8 @@ mod models;
 mod scenarios;
 #[path = "whole/snippets.rs"]
 mod snippets;
+#[path = "whole/wheels.rs"]
+mod wheels;
 
 use std::path::{Path, PathBuf};
 

@@ -6,6 +6,9 @@
 #![allow(clippy::result_large_err, reason = "a scenario is refused once, not in a loop")]
 
 mod assembled;
+mod axles;
+#[cfg(test)]
+mod axles_tests;
 mod candidate;
 mod cycle;
 #[cfg(test)]

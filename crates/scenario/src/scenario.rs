@@ -1,5 +1,6 @@
 //! A scenario that was read and checked, and the models that it stands for.
 
+use crate::axles::axles;
 use crate::candidate::{Candidate, candidates};
 use crate::cycle::cycle;
 use crate::document::Document;
@@ -212,10 +213,13 @@ fn parse(document: &Document) -> Result<ScenarioFile, ScenarioError> {
 }
 
 /// Bounds of the scenario's own numbers.
-const BOUNDS: [(&str, Bound); 16] = [
+const BOUNDS: [(&str, Bound); 19] = [
     ("vehicle.mass_kg", Bound::Positive),
     ("vehicle.rotating_mass_kg", Bound::NotNegative),
     ("vehicle.drag_area_m2", Bound::NotNegative),
+    ("vehicle.centre_of_gravity_height_m", Bound::Within(0.0, 10.0)),
+    ("vehicle.hitch_height_m", Bound::Within(0.0, 10.0)),
+    ("vehicle.slip_limit", Bound::Within(0.01, 0.9)),
     ("vehicle.road_load.f0_n", Bound::Finite),
     ("vehicle.road_load.f1_n_s_m", Bound::Finite),
     ("vehicle.road_load.f2_n_s2_m2", Bound::NotNegative),
@@ -301,6 +305,19 @@ fn model(
         }
         (None, false) => return Err(missing("ground", "ground", "soil")),
     };
+    let axles = axles(document, &file.vehicle)?;
+    if axles.is_some() && soil.is_none() {
+        return Err(misfit(
+            "axles",
+            "given beside `road_load`",
+            "one of the two: road-load coefficients hold the resistance of all wheels",
+            "vehicle.axles",
+        ));
+    }
+    if axles.is_none() && soil.as_ref().is_some_and(|soil| soil.needs_axles()) {
+        let expected = "a vehicle with `axles`: this soil speaks of single wheels";
+        return Err(misfit("soil", "below a vehicle without `axles`", expected, "ground.soil"));
+    }
     let driveline =
         document.find("vehicle.driveline").ok_or_else(|| missing("vehicle", "vehicle", "driveline"))?;
     let more = "headland plugins driveline";
@@ -340,6 +357,7 @@ fn model(
             temperature_c: file.air.temperature_c.unwrap_or(f64::NAN),
         },
         terrain,
+        axles,
         soil,
         driveline,
         tasks,

@@ -1,5 +1,6 @@
 //! The fields of a scenario. Plugins stand as [`Any`]: the registry reads them from the same text.
 
+use crate::axles::AxleFile;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use std::collections::BTreeMap;
@@ -48,6 +49,10 @@ pub struct VehicleFile {
     pub rotating_mass_kg: f64,
     pub drag_area_m2: Option<f64>,
     pub road_load: Option<RoadLoadFile>,
+    pub axles: Option<Vec<AxleFile>>,
+    pub centre_of_gravity_height_m: Option<f64>,
+    pub hitch_height_m: Option<f64>,
+    pub slip_limit: Option<f64>,
     #[allow(dead_code, reason = "read by the registry")]
     pub driveline: Any,
     #[allow(dead_code, reason = "read by the registry")]

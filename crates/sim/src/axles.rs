@@ -73,7 +73,8 @@ impl Axles {
                 return Err(Refusal {
                     parameter: format!("axles.{index}.position_m"),
                     found: list[index].position_m.to_string(),
-                    expected: "axles on both sides of the centre of gravity, from which positions count".to_owned(),
+                    expected: "axles on both sides of the centre of gravity, from which positions count"
+                        .to_owned(),
                 });
             }
         }
@@ -183,7 +184,9 @@ mod tests {
     fn axles_that_cannot_carry_or_drive_are_refused_by_name() {
         let refused = |list: Vec<Axle>| of(list).unwrap_err().to_string();
         assert!(refused(vec![axle(1.0)]).contains("two axles or more"));
-        assert!(refused(vec![axle(1.0), axle(1.0)]).contains("`axles.1.position_m` is 1 for the second time"));
+        assert!(
+            refused(vec![axle(1.0), axle(1.0)]).contains("`axles.1.position_m` is 1 for the second time")
+        );
         assert!(refused(vec![axle(1.0), axle(2.0)]).contains("both sides of the centre of gravity"));
         assert!(refused(vec![axle(1.0), Axle { wheels: 0, ..axle(-2.0) }]).contains("`axles.1.wheels` is 0"));
         let towed = |x: f64| Axle { lead: None, ..axle(x) };

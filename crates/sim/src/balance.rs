@@ -15,6 +15,7 @@ use crate::ledger::{
     AIR, AUXILIARY, BRAKES, DRAWBAR, FIRST_LOSS, HYDRAULICS, PTO, SLOPE, SOIL, SOURCE, Slots,
 };
 use crate::model::Layout;
+use crate::wheels::WheelScratch;
 use crate::{Model, Resistance};
 use headland_plugin::{Action, Air, Contact, Delivery, Demand, Mode, Situation};
 
@@ -74,6 +75,10 @@ pub(crate) struct Instant {
     pub wheel_speed_m_s: f64,
     /// Power that slip takes for each 1/N of it [W N].
     pub slip_w_n: f64,
+    /// Slip of the driveline's speed, without what effects add.
+    pub slip: f64,
+    /// Power that it takes [W].
+    pub slip_w: f64,
 }
 
 impl Instant {
@@ -89,7 +94,7 @@ impl Instant {
 }
 
 /// A wheel that slips more than this only spins.
-const MOST_SLIP: f64 = 0.9;
+pub(crate) const MOST_SLIP: f64 = 0.9;
 
 /// Time, place and motion at which the balance is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -107,6 +112,71 @@ pub(crate) struct Scratch {
     pub actions: Vec<Action>,
     /// What each task is told to do.
     pub modes: Vec<Mode>,
+    /// What each axle does.
+    pub wheels: WheelScratch,
+}
+
+/// What is asked of driveline and ground at one instant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Asked<'a> {
+    pub situation: Situation,
+    pub command: Command,
+    pub given: &'a Given,
+    pub layout: &'a Layout,
+    pub states: &'a [f64],
+    /// As that of the [`Point`].
+    pub direction: f64,
+    pub effective_mass_kg: f64,
+    /// Forces that act whether the vehicle moves or not, forward [N].
+    pub free_n: f64,
+    /// Those of the air among them [N].
+    pub air_n: f64,
+    /// Everything but its force and its speed.
+    pub demand: Demand,
+}
+
+impl Asked<'_> {
+    /// Direction of the motion; forward at rest.
+    #[inline(always)]
+    pub fn way(&self) -> f64 {
+        if self.direction == 0.0 { 1.0 } else { self.direction }
+    }
+
+    /// The direction in which resistances act, and the acceleration [m/s²].
+    ///
+    /// Motion takes every resistance with it; at rest they only hold against what pushes.
+    #[inline(always)]
+    pub fn moves(&self, driving_n: f64, resisting_n: f64) -> (f64, f64) {
+        let way = if self.direction != 0.0 {
+            self.direction
+        } else if driving_n.abs() <= resisting_n {
+            0.0
+        } else {
+            driving_n.signum()
+        };
+        let force_n = driving_n - way * resisting_n;
+        (way, if way == 0.0 { 0.0 } else { force_n / self.effective_mass_kg })
+    }
+}
+
+/// What driveline and ground make of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rolled {
+    pub situation: Situation,
+    pub demand: Demand,
+    pub delivery: Delivery,
+    /// Resistance of the ground [N].
+    pub ground_n: f64,
+    /// That of the brakes [N]; infinite where they hold a vehicle at rest.
+    pub brake_n: f64,
+    /// Direction in which resistances act.
+    pub way: f64,
+    pub acceleration_m_s2: f64,
+    /// Force of the ground on the driven wheels, forward [N].
+    pub traction_n: f64,
+    /// Slip of the driveline's speed, and the speed at which the wheels roll [m/s], without what effects add.
+    pub slip: f64,
+    pub rolling_m_s: f64,
 }
 
 impl Model {
@@ -133,19 +203,13 @@ impl Model {
         let sums = self.sums(&mut situation, given, layout, states, rates, scratch);
         let place = situation.place;
 
-        let rolling_speed = (speed_m_s * direction).max(0.0);
         let weight_n = situation.mass_kg * self.gravity_m_s2;
-        let (ground_n, air_n) = self.ground_and_air_n(&situation, rolling_speed);
-        // An effect may say that the ground resists less, and never that it drives.
-        let ground_n = ground_n.max(-(sums.resistance_n + sums.drawbar_n));
+        let air_n = self.air_n(&situation);
         let slope_n = (weight_n + sums.towed_kg * self.gravity_m_s2) * place.sin_slope;
         let effective_mass_kg = situation.mass_kg + sums.rotating_kg + sums.towed_kg;
         let free_n = air_n - slope_n + sums.pushed_n + sums.task_push_n;
-        let held_n = ground_n + sums.resistance_n + sums.drawbar_n;
-
-        let range = layout.driveline.clone();
         let shaft_power_w = sums.pto_power_w + sums.hydraulic_power_w + sums.effect_shaft_w;
-        let mut demand = Demand {
+        let demand = Demand {
             speed_m_s,
             force_n: 0.0,
             coasting: situation.coasting,
@@ -155,12 +219,71 @@ impl Model {
             battery_resistance_ohm: sums.battery_resistance_ohm,
             engine_speed_rad_s: given.engine_speed_rad_s,
         };
+        let asked = Asked {
+            situation,
+            command,
+            given,
+            layout,
+            states,
+            direction,
+            effective_mass_kg,
+            free_n,
+            air_n,
+            demand,
+        };
+        let rolled = match (&self.axles, &self.soil) {
+            (Some(axles), Some(soil)) => {
+                self.on_wheels((axles, &**soil), &asked, &sums, rates, &mut scratch.wheels)
+            }
+            _ => self.rolling(&asked, &sums, rates),
+        };
+        let Rolled { delivery, demand, rolling_m_s, .. } = rolled;
+        let instant = Instant {
+            acceleration_m_s2: rolled.acceleration_m_s2,
+            situation: rolled.situation,
+            effective_mass_kg,
+            demand,
+            delivery,
+            soil_n: rolled.ground_n,
+            air_n,
+            slope_n,
+            brake_n: if rolled.brake_n.is_finite() { rolled.brake_n } else { 0.0 },
+            drawbar_n: sums.drawbar_n,
+            pushed_n: sums.task_push_n,
+            auxiliary_power_w: sums.auxiliary_power_w,
+            pto_power_w: sums.pto_power_w,
+            hydraulic_power_w: sums.hydraulic_power_w,
+            wheel_speed_m_s: demand.speed_m_s,
+            slip_w_n: if sums.slip_per_n == 0.0 {
+                0.0
+            } else {
+                delivery.force_n * (demand.speed_m_s - rolling_m_s) / sums.slip_per_n
+            },
+            slip: rolled.slip,
+            slip_w: delivery.force_n * rolling_m_s - rolled.traction_n * speed_m_s,
+        };
+        book(&instant, rolled.way, given, slots, &scratch.actions, powers);
+        instant
+    }
+
+    /// The forces of a vehicle that rolls as a whole.
+    #[inline(always)]
+    fn rolling(&self, asked: &Asked, sums: &Sums, rates: &mut [f64]) -> Rolled {
+        let Asked { mut situation, command, given, layout, states, direction, .. } = *asked;
+        let Asked { effective_mass_kg, free_n, mut demand, .. } = *asked;
+        let speed_m_s = situation.speed_m_s;
+        let ground_n = self.ground_n(&situation, (speed_m_s * direction).max(0.0));
+        // An effect may say that the ground resists less, and never that it drives.
+        let ground_n = ground_n.max(-(sums.resistance_n + sums.drawbar_n));
+        let held_n = ground_n + sums.resistance_n + sums.drawbar_n;
+
+        let range = layout.driveline.clone();
         let lost_n = |force_n: f64| sums.loss_share * force_n.abs();
         let wanted_n = match command {
             Command::Coast => 0.0,
             Command::Recorded(force_n) => force_n,
             Command::Accelerate(wanted) => {
-                let way = if direction == 0.0 { 1.0 } else { direction };
+                let way = asked.way();
                 let resting = speed_m_s == 0.0 && wanted == 0.0;
                 let ground_n = if resting { 0.0 } else { effective_mass_kg * wanted - free_n + way * held_n };
                 // F − way ε |F| = ground.
@@ -198,72 +321,52 @@ impl Model {
             Command::Accelerate(wanted) | Command::Push(wanted) if wanted <= 0.0 => f64::INFINITY,
             _ => 0.0,
         };
-
-        // Motion takes every resistance with it; at rest they only hold against what pushes.
         let driving_n = delivery.force_n + free_n;
         let resisting_n = held_n + lost_n(delivery.force_n) + brake_n;
-        let way = if direction != 0.0 {
-            direction
-        } else if driving_n.abs() <= resisting_n {
-            0.0
-        } else {
-            driving_n.signum()
-        };
-        let acceleration_m_s2 =
-            if way == 0.0 { 0.0 } else { (driving_n - way * resisting_n) / effective_mass_kg };
-
-        let brake_n = if brake_n.is_finite() { brake_n } else { 0.0 };
-        let instant = Instant {
-            acceleration_m_s2,
+        let (way, acceleration_m_s2) = asked.moves(driving_n, resisting_n);
+        Rolled {
             situation,
-            effective_mass_kg,
             demand,
             delivery,
-            soil_n: ground_n,
-            air_n,
-            slope_n,
+            ground_n,
             brake_n,
-            drawbar_n: sums.drawbar_n,
-            pushed_n: sums.task_push_n,
-            auxiliary_power_w: sums.auxiliary_power_w,
-            pto_power_w: sums.pto_power_w,
-            hydraulic_power_w: sums.hydraulic_power_w,
-            wheel_speed_m_s: demand.speed_m_s,
-            slip_w_n: if sums.slip_per_n == 0.0 {
-                0.0
-            } else {
-                delivery.force_n * (demand.speed_m_s - speed_m_s) / sums.slip_per_n
-            },
-        };
-        book(&instant, way, given, slots, &scratch.actions, powers);
-        instant
+            way,
+            acceleration_m_s2,
+            traction_n: delivery.force_n,
+            slip: 0.0,
+            rolling_m_s: speed_m_s,
+        }
     }
 
-    /// Resistance of the ground, and force of the air, forward [N].
+    /// Resistance of the ground to a whole vehicle [N].
     #[inline(always)]
-    fn ground_and_air_n(&self, situation: &Situation, rolling_speed: f64) -> (f64, f64) {
-        let Situation { position_m, speed_m_s, place, air, .. } = *situation;
-        let weight_n = situation.mass_kg * self.gravity_m_s2;
+    fn ground_n(&self, situation: &Situation, rolling_speed: f64) -> f64 {
+        let Situation { position_m, ref place, .. } = *situation;
         match self.vehicle.resistance {
-            Resistance::Drag { area_m2 } => {
+            Resistance::Drag { .. } => {
+                let weight_n = situation.mass_kg * self.gravity_m_s2;
                 let load_n = if place.sin_slope == 0.0 { weight_n } else { weight_n * place.cos_slope() };
                 let contact = Contact { load_n, speed_m_s: rolling_speed, position_m };
-                let soil = self.soil.as_ref().map_or(0.0, |soil| soil.resistance_n(&contact));
-                (soil, air.drag_n(area_m2, speed_m_s, place.heading_rad))
+                self.soil.as_ref().map_or(0.0, |soil| soil.resistance_at_n(&contact, place))
             }
             Resistance::RoadLoad { f0_n, f1_n_s_m, .. } => {
-                let area_m2 = self.vehicle.resistance.drag_area_m2();
                 // The constant part goes with the mass: UN GTR 15, annex 4, correction K1.
                 let carried = situation.mass_kg / self.vehicle.mass_kg;
-                let road = carried * f0_n + f1_n_s_m * rolling_speed;
-                (road, air.drag_n(area_m2, speed_m_s, place.heading_rad))
+                carried * f0_n + f1_n_s_m * rolling_speed
             }
         }
     }
 
+    /// Force of the air, forward [N].
+    #[inline(always)]
+    fn air_n(&self, situation: &Situation) -> f64 {
+        let area_m2 = self.vehicle.resistance.drag_area_m2();
+        situation.air.drag_n(area_m2, situation.speed_m_s, situation.place.heading_rad)
+    }
+
     /// The force to ask of the driveline where `situation` holds the one that is wanted.
     #[inline(always)]
-    fn govern(
+    pub(crate) fn govern(
         &self,
         situation: &Situation,
         command: Command,
@@ -395,21 +498,21 @@ impl Model {
 /// What effects and tasks add up to.
 #[derive(Clone, Copy, Debug, Default)]
 #[allow(clippy::struct_field_names, reason = "each name ends in its unit")]
-struct Sums {
-    rotating_kg: f64,
-    towed_kg: f64,
-    task_push_n: f64,
-    pushed_n: f64,
-    resistance_n: f64,
-    auxiliary_power_w: f64,
-    effect_shaft_w: f64,
-    loss_share: f64,
-    slip_per_n: f64,
-    engine_friction_n_m: f64,
-    battery_resistance_ohm: f64,
-    drawbar_n: f64,
-    pto_power_w: f64,
-    hydraulic_power_w: f64,
+pub(crate) struct Sums {
+    pub rotating_kg: f64,
+    pub towed_kg: f64,
+    pub task_push_n: f64,
+    pub pushed_n: f64,
+    pub resistance_n: f64,
+    pub auxiliary_power_w: f64,
+    pub effect_shaft_w: f64,
+    pub loss_share: f64,
+    pub slip_per_n: f64,
+    pub engine_friction_n_m: f64,
+    pub battery_resistance_ohm: f64,
+    pub drawbar_n: f64,
+    pub pto_power_w: f64,
+    pub hydraulic_power_w: f64,
 }
 
 /// Writes the power of every account [W]; `way` is the direction in which resistances act.
@@ -425,6 +528,9 @@ fn book(instant: &Instant, way: f64, given: &Given, slots: &Slots, actions: &[Ac
     powers[PTO] = instant.pto_power_w;
     powers[HYDRAULICS] = instant.hydraulic_power_w;
     powers[AUXILIARY] = given.auxiliary_power_w.unwrap_or(0.0);
+    if let Some(slip) = slots.slip {
+        powers[slip] = instant.slip_w;
+    }
     let losses = slots.first_effect - FIRST_LOSS;
     powers[FIRST_LOSS..slots.first_effect].copy_from_slice(&instant.delivery.losses_w[..losses]);
     for (power, action) in powers[slots.first_effect..].iter_mut().zip(actions) {

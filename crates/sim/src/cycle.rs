@@ -114,6 +114,9 @@ impl<'a> Running<'a> {
         loop {
             let machine = &mut self.machine;
             let instant = machine.instant(control);
+            if let Some(reason) = machine.stuck() {
+                return Err(reason);
+            }
             if !(instant.acceleration_m_s2.is_finite() && machine.speed_m_s().is_finite()) {
                 return Err("a force is not a finite number; look at the parameters of the models".to_owned());
             }

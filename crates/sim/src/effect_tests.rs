@@ -94,6 +94,7 @@ fn model(effects: Vec<Box<dyn Effect>>) -> Model {
         gravity_m_s2: 9.81,
         air: Air { density_kg_m3: 1.2, ..Air::default() },
         terrain: Box::new(Level),
+        axles: None,
         soil: Some(Box::new(Resists(200.0))),
         driveline: Box::new(Ideal),
         tasks: Vec::new(),

@@ -76,6 +76,8 @@ pub(crate) const FIRST_LOSS: usize = 10;
 pub(crate) struct Slots {
     pub names: Vec<String>,
     pub first_effect: usize,
+    /// What the slip of wheels takes; `None` where the vehicle has no axles.
+    pub slip: Option<usize>,
 }
 
 impl Slots {
@@ -98,6 +100,10 @@ impl Slots {
         names.extend(model.driveline.losses().iter().map(|&name| name.to_owned()));
         let first_effect = names.len();
         names.extend(model.effects.iter().map(|effect| effect.name.clone()));
-        Self { names, first_effect }
+        let slip = model.axles.is_some().then(|| {
+            names.push("slip".to_owned());
+            names.len() - 1
+        });
+        Self { names, first_effect, slip }
     }
 }

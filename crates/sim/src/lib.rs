@@ -4,6 +4,9 @@
 //! Three ways to drive it: a [`cycle`](simulate) of phases with a driver, coasting, and a [`replay`] of recorded inputs.
 //! It knows no plugin by name and reads no file.
 
+#[cfg(test)]
+mod axle_tests;
+mod axles;
 mod balance;
 mod cycle;
 #[cfg(test)]
@@ -20,9 +23,13 @@ mod plan;
 mod recorder;
 mod reference;
 mod replay;
+mod root;
 mod slope;
 mod step;
+mod traction;
+mod wheels;
 
+pub use axles::{Axle, Axles};
 pub use cycle::simulate;
 pub use ledger::{Entry, Ledger};
 pub use model::{Model, Named, Resistance, Vehicle};

@@ -1,5 +1,6 @@
 //! A vehicle on its ground, ready to be driven.
 
+use crate::axles::Axles;
 use headland_plugin::{Air, Driveline, Effect, Soil, State, Task, Terrain};
 
 /// The body of the vehicle.
@@ -66,6 +67,8 @@ pub struct Model {
     pub air: Air,
     /// The path.
     pub terrain: Box<dyn Terrain>,
+    /// What carries the vehicle; `None` where it rolls as a whole.
+    pub axles: Option<Axles>,
     /// The ground's resistance; `None` where road-load coefficients hold it.
     pub soil: Option<Box<dyn Soil>>,
     /// From the store of energy to the wheels.

@@ -104,6 +104,7 @@ pub(crate) fn tractor(speed_scale_m_s: f64, drag_area_m2: f64) -> Model {
         gravity_m_s2: GRAVITY_M_S2,
         air: Air { density_kg_m3: 1.235, wind_speed_m_s: 0.0, wind_from_rad: 0.0, temperature_c: 12.0 },
         terrain: Box::new(Incline { sin_slope: 0.0, extent_m: None }),
+        axles: None,
         soil: Some(Box::new(TestSoil { coefficient: COEFFICIENT, speed_scale_m_s, viscous_s_m: 0.0 })),
         // Its 100 kg of rotating mass are taken off the body again, so that the fixtures have none.
         driveline: Box::new(TestDrive { limit_n: 60e3 }),

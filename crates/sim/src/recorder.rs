@@ -73,6 +73,12 @@ impl Recorder {
         names.push("coasting".to_owned());
         names.extend(headland_plugin::Readings::NONE.channels().map(|(name, _)| name.to_owned()));
         names.extend(machine.layout.states.iter().map(|(name, _)| name.clone()));
+        if let Some(axles) = &machine.model.axles {
+            names.push("slip".to_owned());
+            for axle in 1..=axles.list().len() {
+                names.extend(AXLE_CHANNELS.map(|what| format!("axle_{axle}_{what}")));
+            }
+        }
         let first_effect = names.len();
         for effect in &machine.model.effects {
             for unit in EFFECT_UNITS {
@@ -136,6 +142,15 @@ impl Recorder {
         for (value, column) in machine.states().iter().zip(columns.by_ref()) {
             column.push(*value, rows);
         }
+        if machine.model.axles.is_some() {
+            let slip = std::iter::once(instant.slip);
+            let axles = machine.axle_states().iter().flat_map(|axle| {
+                [axle.load_n, axle.slip, axle.traction_n, axle.resistance_n, axle.sinkage_m]
+            });
+            for (value, column) in slip.chain(axles).zip(columns.by_ref()) {
+                column.push(value, rows);
+            }
+        }
         let effects = machine.effect_actions().iter().flat_map(|action| effect_row(instant, action));
         for (value, column) in effects.zip(columns) {
             column.push(value, rows);
@@ -150,6 +165,9 @@ impl Recorder {
         Ok(trace)
     }
 }
+
+/// What is written of an axle.
+const AXLE_CHANNELS: [&str; 5] = ["load_n", "slip", "traction_n", "resistance_n", "sinkage_m"];
 
 /// What is written of an effect: net forward force, power, mass in inertia, friction torque, resistance.
 const EFFECT_UNITS: [&str; 5] = ["n", "w", "kg", "n_m", "ohm"];

@@ -61,12 +61,7 @@ pub(crate) fn rising(
 }
 
 /// Looks for the peak of a function below zero at both ends, and for the root before it.
-fn about_the_peak(
-    f: &mut impl FnMut(f64) -> f64,
-    low: (f64, f64),
-    high: (f64, f64),
-    tolerance: f64,
-) -> Root {
+fn about_the_peak(f: &mut impl FnMut(f64) -> f64, low: (f64, f64), high: (f64, f64), tolerance: f64) -> Root {
     /// Part of an interval that the golden section keeps.
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     /// The peak is flat: to know it by its value takes half of the digits of its place.
@@ -101,7 +96,7 @@ fn about_the_peak(
 /// using derivatives", Advances in Engineering Software 28 (1997), 145-149.
 fn between(f: &mut impl FnMut(f64) -> f64, low: (f64, f64), high: (f64, f64), tolerance: f64) -> f64 {
     let ((mut b, mut fb), (mut a, mut fa)) = (low, high);
-    let (mut c, mut fc) = (a, fa);
+    let (mut c, mut fc);
     let mut share = 0.5;
     for _ in 0..MOST_ITERATIONS {
         let x = a + share * (b - a);

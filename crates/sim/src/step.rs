@@ -8,6 +8,7 @@ use crate::Model;
 use crate::balance::{Command, Given, Instant, Point, Scratch};
 use crate::ledger::{MASS_CHANGE, Slots};
 use crate::model::Layout;
+use crate::wheels::{AxleState, WheelScratch};
 
 /// Where a machine is, what it does and what its models remember.
 #[derive(Clone, Copy, Debug)]
@@ -80,6 +81,7 @@ impl<'a> Machine<'a> {
         let scratch = Scratch {
             actions: vec![headland_plugin::Action::default(); model.effects.len()],
             modes: vec![headland_plugin::Mode::default(); model.tasks.len()],
+            wheels: WheelScratch::default(),
         };
         Self {
             model,
@@ -148,6 +150,17 @@ impl<'a> Machine<'a> {
     /// What each task is told to do from now on.
     pub fn modes(&mut self) -> &mut [headland_plugin::Mode] {
         &mut self.scratch.modes
+    }
+
+    /// Why its wheels cannot go on.
+    pub fn stuck(&self) -> Option<String> {
+        let limit = self.model.axles.as_ref()?.slip_limit;
+        self.scratch.wheels.stuck.map(|stuck| stuck.in_words(limit))
+    }
+
+    /// What each axle does; none where the vehicle rolls as a whole.
+    pub fn axle_states(&self) -> &[AxleState] {
+        &self.scratch.wheels.axles
     }
 
     pub fn effect_actions(&self) -> &[headland_plugin::Action] {

@@ -165,6 +165,27 @@ mod tests {
         );
     }
 
+    /// (1 − s) NT / GT rises to a peak between 5 and 15 % of slip and falls again; the softer the ground, the lower the
+    /// peak and the more slip it takes.
+    #[test]
+    fn traction_efficiency_has_its_peak_at_moderate_slip() {
+        let peak = |cone_index_pa: f64| {
+            let soil = soil(cone_index_pa, Construction::Bias);
+            let efficiency = |slip: f64| {
+                let (gross, resistance) = ratios(&soil, &WheelContact { slip, ..ON });
+                (1.0 - slip) * (gross - resistance) / gross
+            };
+            let curve: Vec<f64> = (1..60).map(|i| efficiency(f64::from(i) / 100.0)).collect();
+            let top = (0..curve.len()).max_by(|a, b| curve[*a].total_cmp(&curve[*b])).unwrap();
+            assert!(curve[..=top].is_sorted() && curve[top..].iter().rev().is_sorted(), "{curve:?}");
+            ((top + 1) as f64 / 100.0, curve[top])
+        };
+        let (firm, tilled, soft) = (peak(1800e3), peak(900e3), peak(450e3));
+        assert!(firm.0 <= tilled.0 && tilled.0 <= soft.0 && firm.1 > tilled.1 && tilled.1 > soft.1);
+        assert!([firm, tilled, soft].iter().all(|(slip, _)| (0.05..0.2).contains(slip)), "{firm:?} {soft:?}");
+        assert!((0.7..0.85).contains(&firm.1) && (0.5..0.75).contains(&soft.1), "{firm:?} {soft:?}");
+    }
+
     #[test]
     fn ground_without_give_leaves_the_resistance_of_the_tyre_alone() {
         let (gross, resistance) = ratios(&soil(1e15, Construction::Bias), &ON);

@@ -88,6 +88,7 @@ fn model(engine: bool, effects: &[(&str, &str)]) -> Model {
             .terrains
             .build("ConstantGrade", "(grade: 0.005, heading_rad: 0.3)", folder)
             .unwrap(),
+        axles: None,
         soil: Some(registry.soils.build("Constant", "(coefficient: 0.02)", folder).unwrap()),
         driveline: registry.drivelines.build(driveline, parameters, folder).unwrap(),
         tasks: Vec::new(),

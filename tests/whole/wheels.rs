@@ -85,7 +85,9 @@ fn a_pull_beyond_the_ground_stops_the_run() {
     let registry = headland_stock::registry();
     let path = root().join("scenarios/pull_test.ron");
     let scenario = Scenario::read(&path, &registry).unwrap();
-    let heavy = scenario.with(&[("tasks.Drawbar.force_n", 95e3)], &registry).unwrap();
+    let changes =
+        [("tasks.Drawbar.force_n", 95e3), ("ground.soil.cone_index_pa", 450e3), ("start.speed_m_s", 0.6)];
+    let heavy = scenario.with(&changes, &registry).unwrap();
     let outcome = simulate(&heavy.model(&registry).unwrap(), heavy.cycle.as_ref().unwrap()).unwrap();
     let End::Stopped { time_s, reason, .. } = outcome.end else { panic!("it went on") };
     assert!(time_s == 0.0 && reason.starts_with("slip past the limit"), "{reason}");

@@ -4,7 +4,7 @@ use crate::document::Document;
 use crate::error::ScenarioError;
 use crate::plugins::bounded;
 use crate::schema::{Any, VehicleFile};
-use headland_plugin::{Bound, Tyre};
+use headland_plugin::{Bound, Soil, Tyre};
 use headland_sim::{Axle, Axles};
 use serde::Deserialize;
 
@@ -47,8 +47,31 @@ const BOUNDS: [(&str, Bound); 9] = [
 /// Fields that a vehicle has with axles and only with them.
 const WITH_AXLES: [&str; 3] = ["centre_of_gravity_height_m", "hitch_height_m", "slip_limit"];
 
-/// The axles of a vehicle; `None` where it has none.
-pub fn axles(document: &Document, vehicle: &VehicleFile) -> Result<Option<Axles>, ScenarioError> {
+/// The axles of a vehicle; `None` where it has none. They and the soil have to suit each other.
+pub fn axles(
+    document: &Document,
+    vehicle: &VehicleFile,
+    soil: Option<&dyn Soil>,
+) -> Result<Option<Axles>, ScenarioError> {
+    let refuse = |name: &str, found: &str, expected: &str, path: &str| ScenarioError::Value {
+        name: name.to_owned(),
+        found: found.to_owned(),
+        expected: expected.to_owned(),
+        at: document.location(document.find(path).map_or(0, |node| node.span.start)),
+    };
+    let axles = standing(document, vehicle)?;
+    if axles.is_some() && soil.is_none() {
+        let expected = "one of the two: road-load coefficients hold the resistance of all wheels";
+        return Err(refuse("axles", "given beside `road_load`", expected, "vehicle.axles"));
+    }
+    if axles.is_none() && soil.is_some_and(Soil::needs_axles) {
+        let expected = "a vehicle with `axles`: this soil speaks of single wheels";
+        return Err(refuse("soil", "below a vehicle without `axles`", expected, "ground.soil"));
+    }
+    Ok(axles)
+}
+
+fn standing(document: &Document, vehicle: &VehicleFile) -> Result<Option<Axles>, ScenarioError> {
     let at = |path: &str| document.find(path).map_or(0, |node| node.span.start);
     let refuse = |name: &str, found: String, expected: &str, path: &str| ScenarioError::Value {
         name: name.to_owned(),

@@ -305,19 +305,7 @@ fn model(
         }
         (None, false) => return Err(missing("ground", "ground", "soil")),
     };
-    let axles = axles(document, &file.vehicle)?;
-    if axles.is_some() && soil.is_none() {
-        return Err(misfit(
-            "axles",
-            "given beside `road_load`",
-            "one of the two: road-load coefficients hold the resistance of all wheels",
-            "vehicle.axles",
-        ));
-    }
-    if axles.is_none() && soil.as_ref().is_some_and(|soil| soil.needs_axles()) {
-        let expected = "a vehicle with `axles`: this soil speaks of single wheels";
-        return Err(misfit("soil", "below a vehicle without `axles`", expected, "ground.soil"));
-    }
+    let axles = axles(document, &file.vehicle, soil.as_deref())?;
     let driveline =
         document.find("vehicle.driveline").ok_or_else(|| missing("vehicle", "vehicle", "driveline"))?;
     let more = "headland plugins driveline";

@@ -14,7 +14,7 @@ const GOOD: &str = r#"(
     cycle: (
         tasks: {
             "plough": Tillage(implement: "moldboard plough", texture: Fine, width_m: 2, depth_m: "25 cm"),
-            "tank": Spreader(power: (a: 0, b: 0, c: 0), width_m: 2, dose_kg_m2: 0.01, capacity_kg: 500,
+            "tank": Spreader(power: (a: 0, b: 0, c: 0), width_m: 2, dose_kg_per_m2: 0.01, capacity_kg: 500,
                              initial_kg: 100, fill_rate_kg_s: 5),
         },
         phases: [

@@ -83,11 +83,14 @@ mod tests {
         }
     }
 
-    /// A unit, words, and a range that the bound allows; files and points have no range.
+    /// What is no number: a file, a name, a choice.
+    const WORDS: [&str; 3] = ["path", "name", "true or false"];
+
+    /// A unit, words, and a range that the bound allows; what is no number, and points, have no range.
     fn complete(name: &str, parameter: &Parameter) {
         let Parameter { unit, about, bound, plausible, default, .. } = *parameter;
         assert!(!unit.is_empty() && !about.is_empty(), "{name}: {parameter:?}");
-        let numbers = unit != "path" && !unit.contains('(');
+        let numbers = !WORDS.contains(&unit) && !unit.contains('(');
         assert_eq!(plausible.is_some(), numbers, "{name}: {parameter:?}");
         if let Some((low, high)) = plausible {
             assert!(low < high && bound.holds(low) && bound.holds(high), "{name}: {parameter:?}");
@@ -104,7 +107,7 @@ mod tests {
         for card in Kind::ALL.into_iter().flat_map(|kind| registry.cards(kind)) {
             for parameter in card.parameters {
                 let unit = parameter.unit.trim_start_matches('[').trim_end_matches(']');
-                if ["1", "path"].contains(&unit) || unit.contains('(') {
+                if unit == "1" || WORDS.contains(&unit) || unit.contains('(') {
                     assert!(
                         headland_units::unit_of_name(parameter.name).is_none(),
                         "{}: {parameter:?}",

@@ -26,7 +26,7 @@ pub struct Harvester {
     #[serde(default)]
     power: Option<Row>,
     width_m: f64,
-    crop_kg_m2: f64,
+    crop_kg_per_m2: f64,
     kept_share: f64,
     capacity_kg: f64,
     #[serde(default)]
@@ -59,14 +59,23 @@ impl Plugin for Harvester {
             parameter("width_m", "m", "width of the crop that is taken in, W")
                 .must_be(Bound::Positive)
                 .usually(1.0, 18.0),
-            parameter("crop_kg_m2", "kg/m²", "crop that is taken in for each area, q; 1 kg/m² is 10 t/ha")
-                .must_be(Bound::NotNegative)
-                .usually(0.1, 10.0),
-            parameter("kept_share", "1", "share of it that stays aboard, κ").must_be(Bound::Within(0.0, 1.0)),
+            parameter(
+                "crop_kg_per_m2",
+                "kg/m²",
+                "crop that is taken in for each area, q; 1 kg/m² is 10 t/ha",
+            )
+            .must_be(Bound::NotNegative)
+            .usually(0.1, 10.0),
+            parameter("kept_share", "1", "share of it that stays aboard, κ")
+                .must_be(Bound::Within(0.0, 1.0))
+                .usually(0.0, 1.0),
             parameter("capacity_kg", "kg", "what the tank, the chamber or the body holds, M")
                 .must_be(Bound::Positive)
                 .usually(100.0, 40_000.0),
-            parameter("initial_kg", "kg", "payload where a run begins").must_be(Bound::NotNegative).or(0.0),
+            parameter("initial_kg", "kg", "payload where a run begins")
+                .must_be(Bound::NotNegative)
+                .usually(0.0, 40_000.0)
+                .or(0.0),
             parameter("empty_rate_kg_s", "kg/s", "how fast it is emptied, r")
                 .must_be(Bound::Positive)
                 .usually(5.0, 500.0),
@@ -101,7 +110,7 @@ const GATHERED: usize = 2;
 impl Harvester {
     fn payload_rate_kg_s(&self, mode: Mode, speed_m_s: f64) -> f64 {
         match mode {
-            Mode::Work => self.kept_share * self.crop_kg_m2 * self.width_m * speed_m_s.abs(),
+            Mode::Work => self.kept_share * self.crop_kg_per_m2 * self.width_m * speed_m_s.abs(),
             Mode::Empty => -self.empty_rate_kg_s,
             Mode::Idle | Mode::Rest | Mode::Fill => 0.0,
         }
@@ -133,7 +142,7 @@ impl Task for Harvester {
         match mode {
             Mode::Work => {
                 rates[AREA] = self.width_m * v;
-                rates[GATHERED] = self.crop_kg_m2 * rates[AREA];
+                rates[GATHERED] = self.crop_kg_per_m2 * rates[AREA];
                 let fullness = m / self.capacity_kg;
                 let growth = if self.bale { 0.5 + 1.5 * fullness * fullness } else { 1.0 };
                 load.pto_power_w = self.row.power_w(self.width_m, growth * rates[GATHERED]);

@@ -9,7 +9,7 @@ fn build(text: &str) -> Result<Harvester, String> {
     Ok(task)
 }
 
-const BALER: &str = "(machine: \"baler, round, variable chamber\", width_m: 6, crop_kg_m2: 0.4, kept_share: 1, \
+const BALER: &str = "(machine: \"baler, round, variable chamber\", width_m: 6, crop_kg_per_m2: 0.4, kept_share: 1, \
                      capacity_kg: 300, empty_rate_kg_s: 100, empty_power_w: 2000, bale: true)";
 
 fn at(speed_m_s: f64) -> Situation {

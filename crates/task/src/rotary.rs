@@ -22,7 +22,7 @@ pub struct Rotary {
     power: Option<Row>,
     width_m: f64,
     #[serde(default)]
-    crop_kg_m2: f64,
+    crop_kg_per_m2: f64,
     #[serde(default)]
     carriage: Option<Carriage>,
     #[serde(skip)]
@@ -51,7 +51,7 @@ impl Plugin for Rotary {
             parameter("power", "(a, b, c)", "coefficients of your own in kW, kW/m and kW h/t; or `machine`"),
             parameter("width_m", "m", "working width, W").must_be(Bound::Positive).usually(1.0, 24.0),
             parameter(
-                "crop_kg_m2",
+                "crop_kg_per_m2",
                 "kg/m²",
                 "what flows through it for each area worked, q; 1 kg/m² is 10 t/ha",
             )
@@ -86,7 +86,7 @@ impl Task for Rotary {
         let mut load = self.carriage.map_or_else(Load::default, |carriage| carriage.load(at, 0.0));
         rates[0] = if mode == Mode::Work { self.width_m * at.speed_m_s.abs() } else { 0.0 };
         if matches!(mode, Mode::Work | Mode::Idle) {
-            load.pto_power_w = self.row.power_w(self.width_m, self.crop_kg_m2 * rates[0]);
+            load.pto_power_w = self.row.power_w(self.width_m, self.crop_kg_per_m2 * rates[0]);
         }
         load
     }
@@ -120,7 +120,7 @@ mod tests {
     /// 2 kg/m² · 6 m · 2.5 m/s = 30 kg/s = 108 t/h: 10 + 0.5 · 6 + 0.25 · 108 = 40 kW.
     #[test]
     fn power_grows_with_what_flows_through() {
-        let own = build("(power: (a: 10, b: 0.5, c: 0.25), width_m: 6, crop_kg_m2: 2)");
+        let own = build("(power: (a: 10, b: 0.5, c: 0.25), width_m: 6, crop_kg_per_m2: 2)");
         let at = Situation { speed_m_s: 2.5, ..Situation::default() };
         let load = own.load(&at, &[0.0], &mut [0.0]);
         assert!((load.pto_power_w / 40_000.0 - 1.0).abs() < 1e-12);

@@ -30,7 +30,8 @@ impl Plugin for ShaftBrake {
                 "times_s",
                 "[s]",
                 "points in time since the start of the run, increasing; one point is a steady brake",
-            ),
+            )
+            .usually(0.0, 1e5),
             parameter("speeds_rad_s", "[rad/s]", "speed at each point, ω")
                 .must_be(Bound::NotNegative)
                 .usually(0.0, 700.0),

@@ -23,7 +23,7 @@ pub struct Spreader {
     #[serde(default)]
     power: Option<Row>,
     width_m: f64,
-    dose_kg_m2: f64,
+    dose_kg_per_m2: f64,
     capacity_kg: f64,
     initial_kg: f64,
     fill_rate_kg_s: f64,
@@ -48,11 +48,13 @@ impl Plugin for Spreader {
             ),
             parameter("power", "(a, b, c)", "coefficients of your own in kW, kW/m and kW h/t; or `machine`"),
             parameter("width_m", "m", "working width, W").must_be(Bound::Positive).usually(1.0, 48.0),
-            parameter("dose_kg_m2", "kg/m²", "what is spread on each area, d; 1 kg/m² is 10 t/ha")
+            parameter("dose_kg_per_m2", "kg/m²", "what is spread on each area, d; 1 kg/m² is 10 t/ha")
                 .must_be(Bound::NotNegative)
                 .usually(0.001, 10.0),
             parameter("capacity_kg", "kg", "what it holds").must_be(Bound::Positive).usually(100.0, 40_000.0),
-            parameter("initial_kg", "kg", "payload where a run begins").must_be(Bound::NotNegative),
+            parameter("initial_kg", "kg", "payload where a run begins")
+                .must_be(Bound::NotNegative)
+                .usually(0.0, 40_000.0),
             parameter("fill_rate_kg_s", "kg/s", "how fast it is filled, r")
                 .must_be(Bound::Positive)
                 .usually(1.0, 300.0),
@@ -78,7 +80,7 @@ const AREA: usize = 1;
 impl Spreader {
     fn payload_rate_kg_s(&self, mode: Mode, speed_m_s: f64) -> f64 {
         match mode {
-            Mode::Work => -self.dose_kg_m2 * self.width_m * speed_m_s.abs(),
+            Mode::Work => -self.dose_kg_per_m2 * self.width_m * speed_m_s.abs(),
             Mode::Fill => self.fill_rate_kg_s,
             Mode::Idle | Mode::Rest | Mode::Empty => 0.0,
         }
@@ -134,7 +136,7 @@ mod tests {
         task
     }
 
-    const MANURE: &str = "(machine: \"manure spreader\", width_m: 10, dose_kg_m2: 2.5, capacity_kg: 16000, \
+    const MANURE: &str = "(machine: \"manure spreader\", width_m: 10, dose_kg_per_m2: 2.5, capacity_kg: 16000, \
                           initial_kg: 12000, fill_rate_kg_s: 60)";
 
     /// 25 t/ha over 10 m at 2 m/s are 50 kg/s, 180 t/h, 0.2 · 180 = 36 kW.

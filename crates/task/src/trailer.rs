@@ -38,7 +38,9 @@ impl Plugin for Trailer {
                  take; 0.012 to 0.02 rolling on roads and 6 to 8 m² are usual",
             ),
             parameter("capacity_kg", "kg", "what it holds").must_be(Bound::Positive).usually(500.0, 40_000.0),
-            parameter("initial_kg", "kg", "load where a run begins").must_be(Bound::NotNegative),
+            parameter("initial_kg", "kg", "load where a run begins")
+                .must_be(Bound::NotNegative)
+                .usually(0.0, 40_000.0),
             parameter("fill_rate_kg_s", "kg/s", "how fast it is filled")
                 .must_be(Bound::Positive)
                 .usually(5.0, 500.0),

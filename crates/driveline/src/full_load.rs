@@ -86,6 +86,20 @@ impl FullLoad {
         within.map_or(0.0, |segment| segment.power(speed.max(segment.low).min(self.last_speed)))
     }
 
+    /// Speed of the greatest power.
+    pub(crate) fn peak_speed(&self) -> f64 {
+        self.peak_speed
+    }
+
+    /// Greatest torque at a speed: that of idle below it, and none beyond the last point.
+    pub(crate) fn torque(&self, speed: f64) -> f64 {
+        if speed > self.last_speed {
+            return 0.0;
+        }
+        let segment = self.segments.iter().rfind(|segment| segment.low <= speed).or(self.segments.first());
+        segment.map_or(0.0, |segment| segment.offset + segment.rate * speed.max(segment.low))
+    }
+
     /// The lowest speed from idle on at which full load gives `power`; that of the greatest power where none does.
     pub(crate) fn lowest_speed(&self, power: f64) -> f64 {
         let Some(segment) = self.segments.iter().find(|segment| segment.power(segment.peak) >= power) else {

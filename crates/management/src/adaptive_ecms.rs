@@ -9,7 +9,7 @@
 //! P_f is the power of the fuel and P_b what is drawn from the store before its resistance. Needs no knowledge of the work
 //! ahead: a charge that falls makes the store dearer until it stays.
 
-use crate::ecms::{counted, may_switch, whole};
+use crate::ecms::{counted, may_switch, usual_levels, whole};
 use crate::least::cheapest;
 use headland_plugin::{Bound, Card, Management, Outlook, Plugin, Refusal, Share, State, Stores, parameter};
 use serde::Deserialize;
@@ -23,6 +23,7 @@ pub struct AdaptiveEcms {
     proportional_gain: f64,
     integral_gain_per_s: f64,
     target_charge: f64,
+    #[serde(default = "usual_levels")]
     levels: f64,
     least_time_s: f64,
 }

@@ -27,6 +27,7 @@ pub struct Ecms {
     equivalence_discharge: f64,
     equivalence_charge: f64,
     target_charge: f64,
+    #[serde(default = "usual_levels")]
     levels: f64,
     least_time_s: f64,
 }
@@ -72,6 +73,11 @@ impl Plugin for Ecms {
         }
         whole("levels", self.levels)
     }
+}
+
+/// Powers that are looked at where a scenario does not say how many.
+pub(crate) const fn usual_levels() -> f64 {
+    20.0
 }
 
 /// Refuses a number that does not count.

@@ -119,10 +119,11 @@ pub trait Driveline: Debug + Send + Sync {
         false
     }
 
-    /// Why it gives less than `demand` asks and will not give it later either, as with an empty battery: the run ends.
-    /// Asked only where the delivered force falls short. `None` where what it gives is all that it is made for.
-    fn exhausted(&self, demand: &Demand, states: &[f64]) -> Option<String> {
-        let _ = (demand, states);
+    /// Why the run cannot go on, as with an empty battery or a map that has an end: `delivery` is what it gave to
+    /// `demand`. Asked once between two steps of those that remember anything. `None` where it goes on, though perhaps with
+    /// less than was asked.
+    fn exhausted(&self, demand: &Demand, delivery: &Delivery, states: &[f64]) -> Option<String> {
+        let _ = (demand, delivery, states);
         None
     }
 

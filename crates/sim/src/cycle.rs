@@ -127,7 +127,7 @@ impl<'a> Running<'a> {
             if left_s <= 0.0 || ending.left(&machine.moment()) <= 0.0 {
                 return Ok(machine.time_s >= ending.end_s || ending.left(&machine.moment()) <= 0.0);
             }
-            if let Some(reason) = hopeless(machine, &instant).or_else(|| machine.exhausted(&instant)) {
+            if let Some(reason) = machine.exhausted(&instant).or_else(|| hopeless(machine, &instant)) {
                 return Err(reason);
             }
             if let Some(reason) = machine.trouble(&instant) {

@@ -177,16 +177,13 @@ impl<'a> Machine<'a> {
         instant
     }
 
-    /// Why the driveline gives less than is asked for good.
+    /// Why the driveline cannot go on.
     pub fn exhausted(&self, instant: &Instant) -> Option<String> {
-        let (asked, given) = (instant.demand.force_n, instant.delivery.force_n);
-        // Braking that the driveline does not do is done by the brakes.
-        let short = given != asked && asked * self.y[SPEED] >= 0.0;
-        if !short {
+        let own = self.layout.driveline.clone();
+        if own.is_empty() {
             return None;
         }
-        let own = self.layout.driveline.clone();
-        self.model.driveline.exhausted(&instant.demand, &self.states()[own])
+        self.model.driveline.exhausted(&instant.demand, &instant.delivery, &self.states()[own])
     }
 
     /// Lets the driveline decide; says whether anything changed. Who remembers nothing decides nothing.

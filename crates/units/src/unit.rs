@@ -126,6 +126,7 @@ const ATOMS: &[(&str, Dimension, f64)] = &[
     ("psi", PRESSURE, 6_894.757_293_168_361),
     ("V", VOLTAGE, 1.0),
     ("mV", VOLTAGE, 1e-3),
+    ("F", Dimension::of(-2, -1, 4, 2, 0, 0), 1.0),
     ("ohm", RESISTANCE, 1.0),
     ("Ω", RESISTANCE, 1.0),
     ("mohm", RESISTANCE, 1e-3),

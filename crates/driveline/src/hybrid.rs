@@ -1,0 +1,404 @@
+//! What drivelines with an engine and a second store have in common: the sharing of power that a management decides, and the
+//! limits that make them depart from it.
+//!
+//! Between two steps the management says whether the engine runs and what power P_e it gives. Within a step P_e stays, and
+//! the electric side makes up the difference to what is asked. Where a machine or the store cannot:
+//! 1. too much is asked of it: the engine gives more, up to full load; then the wheels get less
+//! 2. too much is pushed into it: the engine gives less, down to its own friction; then the wheels brake less, and the
+//!    service brakes take the rest
+//!
+//! Other consumers are always served, beyond the limits of the store if need be.
+
+use crate::engine::{Circumstance, Engine, Running};
+use crate::parts::crossing;
+use crate::store::{Drawn, Store};
+use headland_plugin::{
+    Bound, Card, Consequence, Delivery, Demand, Driveline, MAX_LOSSES, Management, Outlook, Parameter,
+    Plugin, Readings, Refusal, Share, State, Stores, parameter,
+};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Deserializer};
+use std::fmt::Debug;
+use std::path::Path;
+
+/// How the electric consumers of a hybrid are told.
+pub(crate) const CONSUMERS: [Parameter; 2] = [
+    parameter("standby_power_w", "W", "electric: controllers, steering and cooling, at all times")
+        .must_be(Bound::NotNegative)
+        .usually(0.0, 1e4),
+    parameter("converter_efficiency", "1", "battery to other consumers")
+        .must_be(Bound::Efficiency)
+        .usually(0.8, 0.99),
+];
+
+/// What a topology is asked.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Asked<'a> {
+    pub demand: &'a Demand,
+    /// Speed in the direction of driving.
+    pub speed_m_s: f64,
+    pub at: Circumstance,
+    pub motor_c: f64,
+    /// Its own states.
+    pub own: &'a [f64],
+}
+
+/// What flows through a topology for a force and a power of the engine.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Flow {
+    pub running: Running,
+    /// Electric power that the machines take from the store and each other [W].
+    pub bus_w: f64,
+    /// By how much more is asked of the machines than they can; negative where they can more [W].
+    pub asked_w: f64,
+    /// By how much more is pushed into the machines than they can; negative where they can more [W].
+    pub pushed_w: f64,
+    pub transmission_w: f64,
+    pub motor_loss_w: f64,
+    pub generator_loss_w: f64,
+    pub motor_rad_s: f64,
+    pub motor_n_m: f64,
+    pub motor_warming_k_s: f64,
+    /// Rates of its own states.
+    pub own_rates: [f64; 2],
+    pub cvt_ratio: f64,
+}
+
+/// How engine, machines and wheels hang together.
+pub(crate) trait Topology: Debug + Send + Sync {
+    const CARD: Card;
+    /// Names of what it loses: engine heat, transmission, accessories, motor, store, charge, and the generator if there is one.
+    const LOSSES: &'static [&'static str];
+    /// The same with a supercapacitor.
+    const LOSSES_OF_SUPERCAPACITOR: &'static [&'static str];
+
+    fn settle(&mut self) -> Result<(), Refusal>;
+    fn engine(&self) -> &Engine;
+    fn store(&self) -> &Store;
+    fn has_supercapacitor(&self) -> bool;
+    fn consumers(&self) -> Consumers;
+    fn coolant_c(&self) -> f64;
+    fn own_states(&self) -> Vec<State>;
+    fn rotating_mass_kg(&self) -> f64;
+    /// Greatest braking and driving force that machines and gears can take.
+    fn most_force_n(&self, asked: &Asked) -> (f64, f64);
+    /// What flows for a force in the direction of driving; `engine_w` is `None` where the engine stands still.
+    fn flow(&self, asked: &Asked, force_n: f64, engine_w: Option<f64>) -> Flow;
+    /// Changes its own states between two steps.
+    fn choose(&self, asked: &Asked, flow: &Flow, own: &mut [f64]) -> bool {
+        let _ = (asked, flow, own);
+        false
+    }
+}
+
+/// Electric consumers beside the machines.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Consumers {
+    pub standby_w: f64,
+    pub converter_efficiency: f64,
+}
+
+impl Consumers {
+    fn total_w(&self, demand: &Demand) -> f64 {
+        self.standby_w + demand.auxiliary_power_w / self.converter_efficiency
+    }
+}
+
+/// A topology with its management.
+#[derive(Debug)]
+pub struct Managed<T> {
+    topology: T,
+    management: Option<Box<dyn Management>>,
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Managed<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        T::deserialize(deserializer).map(|topology| Self { topology, management: None })
+    }
+}
+
+#[allow(private_bounds, reason = "the topologies are those of this crate")]
+impl<T: Topology + DeserializeOwned + 'static> Plugin for Managed<T> {
+    const CARD: Card = T::CARD;
+
+    fn settle(&mut self, _: &Path) -> Result<(), Refusal> {
+        self.topology.settle()
+    }
+}
+
+const BOOST: usize = 0;
+const RUNS: usize = 1;
+const SET: usize = 2;
+const CHARGE: usize = 3;
+const VOLUME: usize = 4;
+const CARBON: usize = 5;
+const MOTOR_C: usize = 6;
+const OWN: usize = 7;
+
+/// At rest a force that misses is weighed as if the vehicle crept [m/s]: no power tells of it.
+const CREEP_M_S: f64 = 0.5;
+
+/// What came about.
+struct Solved {
+    force: f64,
+    engine_w: f64,
+    flow: Flow,
+    drawn: Drawn,
+}
+
+#[allow(private_bounds, reason = "the topologies are those of this crate")]
+impl<T: Topology> Managed<T> {
+    fn asked<'a>(&'a self, demand: &'a Demand, states: &'a [f64]) -> Asked<'a> {
+        let own = self.topology.own_states().len();
+        Asked {
+            demand,
+            speed_m_s: demand.speed_m_s.abs(),
+            at: Circumstance {
+                boost: states[BOOST],
+                friction_n_m: demand.engine_friction_n_m,
+                hand_rad_s: demand.engine_speed_rad_s,
+            },
+            motor_c: states[MOTOR_C],
+            own: &states[OWN..OWN + own],
+        }
+    }
+
+    fn way(demand: &Demand) -> f64 {
+        if demand.speed_m_s == 0.0 {
+            if demand.force_n < 0.0 { -1.0 } else { 1.0 }
+        } else {
+            demand.speed_m_s.signum()
+        }
+    }
+
+    /// The force in the direction of driving that gears and machines could make.
+    fn wanted_n(&self, asked: &Asked) -> f64 {
+        if asked.demand.coasting {
+            return 0.0;
+        }
+        let (brakes, drives) = self.topology.most_force_n(asked);
+        (asked.demand.force_n * Self::way(asked.demand)).clamp(-brakes, drives)
+    }
+
+    /// Departs from a share as little as the limits ask.
+    fn solve(&self, demand: &Demand, states: &[f64], share: Share) -> Solved {
+        let asked = self.asked(demand, states);
+        let (engine, store) = (self.topology.engine(), self.topology.store());
+        let (most_out, most_in) = store.most_w(states[CHARGE], demand.battery_resistance_ohm);
+        let others = self.topology.consumers().total_w(demand);
+        let (least, most) = (engine.least_w(&asked.at), engine.most_w(&asked.at));
+        let power = |engine_w: f64| share.engine_runs.then_some(engine_w);
+        let flow = |force: f64, engine_w: f64| self.topology.flow(&asked, force, power(engine_w));
+        let too_much = |flow: &Flow| flow.asked_w.max(flow.bus_w + others - most_out);
+        let pushed = |flow: &Flow| flow.pushed_w.max(-flow.bus_w - others - most_in);
+
+        let mut force = self.wanted_n(&asked);
+        let mut engine_w = share.engine_w.clamp(least.min(most), most);
+        let mut found = flow(force, engine_w);
+        if too_much(&found) > 0.0 {
+            if share.engine_runs {
+                engine_w = crossing(engine_w, most, |engine_w| -too_much(&flow(force, engine_w)));
+                found = flow(force, engine_w);
+            }
+            // What the crossing leaves is rounding of the power that flows.
+            if force > 0.0 && too_much(&found) > 1e-9 * (found.bus_w.abs() + others + 1.0) {
+                let less = crossing(0.0, force, |less| -too_much(&flow(force - less, engine_w)));
+                force -= less;
+                found = flow(force, engine_w);
+            }
+        } else if pushed(&found) > 0.0 {
+            if share.engine_runs {
+                let less = crossing(0.0, engine_w - least, |less| -pushed(&flow(force, engine_w - less)));
+                engine_w -= less;
+                found = flow(force, engine_w);
+            }
+            if force < 0.0 && pushed(&found) > 1e-9 * (found.bus_w.abs() + others + 1.0) {
+                let less = crossing(0.0, -force, |less| -pushed(&flow(force + less, engine_w)));
+                force += less;
+                found = flow(force, engine_w);
+            }
+        }
+        let drawn = store.draw(found.bus_w + others, states[CHARGE], demand.battery_resistance_ohm);
+        Solved { force, engine_w: if share.engine_runs { engine_w } else { 0.0 }, flow: found, drawn }
+    }
+
+    fn share(states: &[f64]) -> Share {
+        Share { engine_runs: states[RUNS] > 0.5, engine_w: states[SET] }
+    }
+
+    fn outlook(&self, demand: &Demand, states: &[f64], power_w: f64) -> Outlook {
+        let asked = self.asked(demand, states);
+        let (out, into) = self.topology.store().most_w(states[CHARGE], demand.battery_resistance_ohm);
+        Outlook {
+            power_w,
+            most_engine_w: self.topology.engine().most_w(&asked.at).max(0.0),
+            state_of_charge: states[CHARGE],
+            window: self.topology.store().window,
+            most_store_w: (out, into),
+            engine_runs: states[RUNS] > 0.5,
+        }
+    }
+
+    /// The power of the engine that leaves the store alone, by the secant method.
+    fn alone_w(&self, demand: &Demand, states: &[f64]) -> f64 {
+        const ROUNDS: usize = 4;
+        let asked = self.asked(demand, states);
+        let force = self.wanted_n(&asked);
+        let others = self.topology.consumers().total_w(demand);
+        let bus = |engine_w: f64| self.topology.flow(&asked, force, Some(engine_w)).bus_w + others;
+        let mut one = force * asked.speed_m_s + demand.shaft_power_w + others;
+        let mut at_one = bus(one);
+        let mut two = one + at_one;
+        for _ in 0..ROUNDS {
+            let at_two = bus(two);
+            if at_two == at_one || two == one {
+                break;
+            }
+            let next = two - at_two * (two - one) / (at_two - at_one);
+            (one, at_one, two) = (two, at_two, next);
+        }
+        if two.is_finite() { two } else { one }
+    }
+}
+
+/// A hybrid at an instant, as its management sees it.
+struct Weighing<'a, T> {
+    hybrid: &'a Managed<T>,
+    demand: &'a Demand,
+    states: &'a [f64],
+    outlook: Outlook,
+}
+
+impl<T: Topology> Stores for Weighing<'_, T> {
+    fn outlook(&self) -> Outlook {
+        self.outlook
+    }
+
+    fn weigh(&self, share: Share) -> Consequence {
+        self.hybrid.consequence(self.demand, self.states, share)
+    }
+}
+
+#[allow(private_bounds, reason = "the topologies are those of this crate")]
+impl<T: Topology> Managed<T> {
+    fn consequence(&self, demand: &Demand, states: &[f64], share: Share) -> Consequence {
+        let Solved { force, engine_w, flow, drawn } = self.solve(demand, states, share);
+        let wanted = demand.force_n * Self::way(demand);
+        let short = if demand.coasting { 0.0 } else { (wanted - force).max(0.0) };
+        let (out, _) = self.topology.store().most_w(states[CHARGE], demand.battery_resistance_ohm);
+        let beyond = (drawn.store_w - drawn.loss_w - out).max(0.0);
+        Consequence {
+            fuel_w: flow.running.fuel_w,
+            store_w: drawn.store_w,
+            charge_per_s: drawn.charge_per_s,
+            short_w: short * demand.speed_m_s.abs().max(CREEP_M_S) + beyond,
+            engine_w,
+        }
+    }
+}
+
+#[allow(private_bounds, reason = "the topologies are those of this crate")]
+impl<T: Topology> Driveline for Managed<T> {
+    fn states(&self) -> Vec<State> {
+        let mut states = vec![
+            State { name: "boost", initial: 0.0 },
+            State { name: "engine_runs", initial: 1.0 },
+            State { name: "engine_set_power_w", initial: 0.0 },
+            State { name: "state_of_charge", initial: self.topology.store().initial },
+            State { name: "fuel_m3", initial: 0.0 },
+            State { name: "carbon_dioxide_kg", initial: 0.0 },
+            State { name: "motor_temperature_c", initial: self.topology.coolant_c() },
+        ];
+        states.extend(self.topology.own_states());
+        states.extend(self.management.iter().flat_map(|management| management.states()));
+        states
+    }
+
+    fn losses(&self) -> &'static [&'static str] {
+        if self.topology.has_supercapacitor() { T::LOSSES_OF_SUPERCAPACITOR } else { T::LOSSES }
+    }
+
+    fn source(&self) -> &'static str {
+        "fuel"
+    }
+
+    fn rotating_mass_kg(&self, _: bool) -> f64 {
+        self.topology.rotating_mass_kg()
+    }
+
+    fn deliver(&self, demand: &Demand, states: &[f64], rates: &mut [f64]) -> Delivery {
+        let Solved { force, engine_w, flow, drawn } = self.solve(demand, states, Self::share(states));
+        let engine = self.topology.engine();
+        if let Some(own) = rates.get_mut(..OWN) {
+            (own[RUNS], own[SET]) = (0.0, 0.0);
+            (own[BOOST], own[CHARGE]) = (flow.running.boost_per_s, drawn.charge_per_s);
+            (own[VOLUME], own[CARBON]) = engine.burnt(flow.running.fuel_w);
+            own[MOTOR_C] = flow.motor_warming_k_s;
+            let ends = OWN + self.topology.own_states().len();
+            rates[OWN..ends].copy_from_slice(&flow.own_rates[..ends - OWN]);
+            if let Some(management) = &self.management {
+                let power_w = engine_w + drawn.store_w - drawn.loss_w;
+                management.flow(&self.outlook(demand, states, power_w), &states[ends..], &mut rates[ends..]);
+            }
+        }
+        let force_n = force * Self::way(demand);
+        let consumers = self.topology.consumers();
+        let mut losses_w = [0.0; MAX_LOSSES];
+        losses_w[0] = flow.running.heat_w();
+        losses_w[1] = flow.transmission_w;
+        losses_w[2] = flow.running.accessories_w + consumers.total_w(demand) - demand.auxiliary_power_w;
+        losses_w[3] = flow.motor_loss_w;
+        losses_w[4] = drawn.loss_w;
+        losses_w[5] = -drawn.store_w;
+        losses_w[6] = flow.generator_loss_w;
+        Delivery {
+            force_n,
+            source_power_w: flow.running.fuel_w,
+            losses_w,
+            readings: Readings {
+                engine_speed_rad_s: flow.running.speed_rad_s,
+                engine_torque_n_m: flow.running.torque_n_m(),
+                fuel_rate_kg_s: flow.running.fuel_w / engine.heating_value_j_kg(),
+                cvt_ratio: flow.cvt_ratio,
+                motor_speed_rad_s: flow.motor_rad_s,
+                motor_torque_n_m: flow.motor_n_m,
+                battery_voltage_v: drawn.voltage_v,
+                battery_current_a: drawn.current_a,
+            },
+        }
+    }
+
+    fn decide(&self, demand: &Demand, states: &mut [f64]) -> bool {
+        let ends = OWN + self.topology.own_states().len();
+        let flow = self.solve(demand, states, Self::share(states)).flow;
+        let mut own = states[OWN..ends].to_vec();
+        let chosen = self.topology.choose(&self.asked(demand, states), &flow, &mut own);
+        states[OWN..ends].copy_from_slice(&own);
+        let Some(management) = &self.management else { return chosen };
+        let (base, memory) = states.split_at_mut(ends);
+        let outlook = self.outlook(demand, base, self.alone_w(demand, base));
+        let share = management.share(&Weighing { hybrid: self, demand, states: base, outlook }, memory);
+        let set = if share.engine_runs { share.engine_w } else { 0.0 };
+        let runs = f64::from(u8::from(share.engine_runs));
+        let changed = base[RUNS] != runs || base[SET] != set;
+        (base[RUNS], base[SET]) = (runs, set);
+        chosen || changed
+    }
+
+    fn needs_management(&self) -> bool {
+        self.management.is_none()
+    }
+
+    fn adopt(&mut self, management: Box<dyn Management>) -> Result<(), Refusal> {
+        self.management = Some(management);
+        Ok(())
+    }
+
+    fn weigh(&self, demand: &Demand, states: &[f64], share: Share) -> Option<Consequence> {
+        Some(self.consequence(demand, states, share))
+    }
+}
+
+#[cfg(test)]
+#[path = "hybrid_tests.rs"]
+mod tests;

@@ -5,6 +5,7 @@ use crate::noise::{Noise, Noises, Shape};
 use crate::recorded::{Recorded, SLOWEST_M_S};
 use crate::rows::{Chunk, Row, chunks};
 use crate::said::Said;
+use crate::voltage::change_v;
 use nalgebra::DVector;
 use serde::Serialize;
 
@@ -20,13 +21,17 @@ pub enum Kind {
     Motion,
     /// Battery power against what drives and auxiliaries take.
     Battery,
+    /// Battery voltage against its current: the battery balance's other half.
+    #[serde(rename = "battery")]
+    Voltage,
     /// Fuel against the engine's work.
     Fuel,
 }
 
 impl Kind {
     /// From the ground up: a mismatch lives in the first that does not close.
-    pub const ORDER: [Self; 5] = [Self::Parity, Self::Slip, Self::Motion, Self::Battery, Self::Fuel];
+    pub const ORDER: [Self; 6] =
+        [Self::Parity, Self::Slip, Self::Motion, Self::Battery, Self::Voltage, Self::Fuel];
 
     /// As it is written.
     pub fn name(self) -> &'static str {
@@ -34,7 +39,7 @@ impl Kind {
             Self::Parity => "parity",
             Self::Slip => "slip",
             Self::Motion => "motion",
-            Self::Battery => "battery",
+            Self::Battery | Self::Voltage => "battery",
             Self::Fuel => "fuel",
         }
     }
@@ -46,6 +51,7 @@ impl Kind {
             Self::Slip => "m/s",
             Self::Motion => "N",
             Self::Battery | Self::Fuel => "W",
+            Self::Voltage => "V",
         }
     }
 
@@ -56,6 +62,7 @@ impl Kind {
             Self::Slip => "wheel_speed_m_s",
             Self::Motion => "speed_m_s",
             Self::Battery => "battery_power_w",
+            Self::Voltage => "battery_voltage_v",
             Self::Fuel => "fuel_rate_kg_s",
         }
     }
@@ -194,6 +201,10 @@ pub fn kinds(runs: &[Recorded], said: &[Said]) -> Vec<Kind> {
             Kind::Slip => any(&|run, _| has(run, "wheel_speed_m_s")),
             Kind::Motion => any(&|run, _| run.force_n.is_some()),
             Kind::Battery => any(&|run, said| has(run, "battery_power_w") && said.battery_w.is_some()),
+            Kind::Voltage => any(&|run, said| {
+                let known = |name| has(run, name);
+                known("battery_voltage_v") && known("battery_current_a") && said.resistance_ohm.is_some()
+            }),
             Kind::Fuel => any(&|run, said| has(run, "fuel_rate_kg_s") && said.fuel_kg_s.is_some()),
         })
         .collect()
@@ -236,6 +247,11 @@ fn usable(kind: Kind, run: &Recorded, said: &Said) -> Vec<bool> {
                     moving && finite(channel("wheel_speed_m_s")) && finite(Some(&said.wheel_speed_m_s))
                 }
                 Kind::Battery => finite(channel("battery_power_w")) && finite(said.battery_w.as_deref()),
+                Kind::Voltage => {
+                    said.resistance_ohm.is_some()
+                        && finite(channel("battery_voltage_v"))
+                        && finite(channel("battery_current_a"))
+                }
                 Kind::Fuel => {
                     finite(channel("fuel_rate_kg_s"))
                         && finite(said.fuel_kg_s.as_deref())
@@ -252,6 +268,7 @@ fn residual(kind: Kind, run: &Recorded, said: &Said, chunk: &Chunk) -> DVector<f
     let zero = vec![0.0; trace.len()];
     let channel = |name: &str| trace.get(name).unwrap_or(&zero);
     let one = |row: &Row| match kind {
+        Kind::Voltage => row.mean(&said.voltage_left_v),
         Kind::Motion => {
             let force = run.force_n.as_deref().unwrap_or(&zero);
             let slope = row.slope(time_s, channel("speed_m_s"));
@@ -288,6 +305,10 @@ pub fn change(kind: Kind, run: &Recorded, before: &Said, after: &Said) -> Vec<f6
         Kind::Slip => minus(&before.wheel_speed_m_s, &after.wheel_speed_m_s),
         Kind::Battery => match (&before.battery_w, &after.battery_w) {
             (Some(before), Some(after)) => minus(before, after),
+            _ => vec![0.0; count],
+        },
+        Kind::Voltage => match (before.resistance_ohm, after.resistance_ohm) {
+            (Some(before), Some(after)) => change_v(run, after - before),
             _ => vec![0.0; count],
         },
         Kind::Fuel => match (&before.fuel_kg_s, &after.fuel_kg_s) {

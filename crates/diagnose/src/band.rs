@@ -113,8 +113,8 @@ impl Factor {
         DVector::from_column_slice(values)
     }
 
-    /// The diagonal of the inverse.
-    pub fn inverse_diagonal(&self) -> DVector<f64> {
+    /// The diagonal of the inverse, and what stands to the left of it; of the first row nothing does.
+    pub fn inverse_diagonals(&self) -> (DVector<f64>, DVector<f64>) {
         let Self(factor) = self;
         // Z = D⁻¹ + (I − Lᵀ/d) Z within the band, from the last row up.
         let mut inverse = Band::zeros(factor.size, factor.width);
@@ -137,7 +137,11 @@ impl Factor {
                 inverse.entries[place] = (lone - sum) / own;
             }
         }
-        DVector::from_fn(factor.size, |row, _| inverse.entries[inverse.place(row, row)])
+        let own = DVector::from_fn(factor.size, |row, _| inverse.entries[inverse.place(row, row)]);
+        let beside = |row: usize| {
+            if row == 0 || factor.width == 0 { 0.0 } else { inverse.entries[inverse.place(row, row - 1)] }
+        };
+        (own, DVector::from_fn(factor.size, |row, _| beside(row)))
     }
 }
 
@@ -186,12 +190,14 @@ mod tests {
     }
 
     #[test]
-    fn its_determinant_and_the_diagonal_of_its_inverse_are_those_of_the_full_matrix() {
+    fn its_determinant_and_the_diagonals_of_its_inverse_are_those_of_the_full_matrix() {
         let (band, full) = example();
         let factor = band.cholesky().unwrap();
         assert!((factor.log_determinant() - full.determinant().ln()).abs() < 1e-12);
         let inverse = full.try_inverse().unwrap();
-        assert!((factor.inverse_diagonal() - inverse.diagonal()).norm() < 1e-14);
+        let (own, beside) = factor.inverse_diagonals();
+        assert!((own - inverse.diagonal()).norm() < 1e-14);
+        assert!((1..9).all(|row| (beside[row] - inverse[(row, row - 1)]).abs() < 1e-14));
     }
 
     #[test]

@@ -712,7 +712,7 @@ fn powers(all: &mut Vec<Cause>) {
         cause(
             "auxiliary_power",
             &[Kind::Battery, Kind::Fuel],
-            vec![positive("power_w", "W", 1500.0)],
+            vec![positive("power_w", "W", 1500.0).within(0.0, f64::INFINITY)],
             "P = P(t)",
             &["time_s"],
             "a consumer that is switched with time",
@@ -722,9 +722,9 @@ fn powers(all: &mut Vec<Cause>) {
     );
     all.push(cause(
         "battery_resistance",
-        &[Kind::Battery],
+        &[Kind::Voltage],
         vec![linear("resistance_ohm", "ohm", 0.1)],
-        "P = ΔR I²",
+        "P = ΔR I², U = U₀ − (R + ΔR) I",
         &["battery_current_a"],
         "a different resistance of the battery",
         "draw a step of current at rest and log the voltage",

@@ -2,9 +2,13 @@
 
 use crate::catalogue::Form;
 use crate::gram::{Column, Reduced, Whitened};
+use crate::jumps::Jumps;
+use crate::noise::{Noise, Noises};
 use crate::profile::Spread;
 use crate::search::rank;
 use crate::state::{Part, Stand, State};
+use crate::trial::Trial;
+use headland_calibrate::statistics::median;
 use rayon::prelude::*;
 
 /// A set with one cause more.
@@ -26,7 +30,7 @@ impl State<'_> {
             .iter()
             .flat_map(|part| {
                 let cause = self.cause(&part.trial);
-                std::iter::once(cause.id).chain(part.spread.and(cause.even()).map(|(even, _)| even))
+                std::iter::once(cause.id).chain(part.spread.as_ref().and(cause.even()).map(|(even, _)| even))
             })
             .chain(banned.iter().copied())
             .collect();
@@ -63,35 +67,97 @@ impl State<'_> {
             let close = open.iter().filter(|one| one.0 > best - CLOSE).count();
             open.truncate(FINALISTS.max(close.min(2 * FINALISTS)));
         }
-        let mut finalists: Vec<Part> = open.into_iter().map(|(_, part)| part).collect();
+        let mut finalists: Vec<(Part, Noises)> =
+            open.into_iter().map(|(_, part)| (part, stand.noises.clone())).collect();
         finalists.extend(self.functions(stand, &taken));
         // The noise belongs to what is explained: each finalist is judged with its own.
-        let settled = |part: Part| {
+        let settled = |(part, noises): (Part, Noises)| {
             let mut parts = stand.parts.clone();
             parts.push(part);
-            let settled = self.settle(&parts, &stand.noises)?;
-            (!self.impossible(&settled.parts, &settled.estimate)).then_some(Contest { stand: settled })
+            let settled = self.settle(&parts, &noises)?;
+            let possible = !self.impossible(&settled.parts, &settled.estimate) && self.functions_possible(&settled);
+            possible.then_some(Contest { stand: settled })
         };
         let mut judged: Vec<Contest> = finalists.into_par_iter().filter_map(settled).collect();
         judged.sort_by(|one, other| rank(&other.stand, self).total_cmp(&rank(&one.stand, self)));
         judged
     }
 
-    /// The functions, each spread as suits best at the noise of a set.
-    fn functions(&self, stand: &Stand, taken: &[&str]) -> Vec<Part> {
-        let open = self.pool.trials.par_iter().filter(|trial| {
+    /// The functions, each spread as suits best at the noise of a set, and once more at the noise that neighbouring rows
+    /// show: what a function leaves out passes for noise, and would let no function follow.
+    fn functions(&self, stand: &Stand, taken: &[&str]) -> Vec<(Part, Noises)> {
+        let open = self.pool.trials.iter().filter(|trial| {
             let cause = self.cause(trial);
             cause.is_function() && !taken.contains(&cause.id) && self.apart(trial, &stand.parts)
         });
-        let part = |trial: &crate::trial::Trial| {
+        let quiet = self.quiet(stand);
+        let starts: Vec<(&Trial, &Noises)> =
+            open.flat_map(|trial| [(trial, &stand.noises), (trial, &quiet)]).collect();
+        let part = |(trial, noises): (&Trial, &Noises)| {
             let part = Part { trial: trial.clone(), spread: None };
-            Some(Part { spread: Some(self.best_spread(&part, stand)?), ..part })
+            let spread = self.best_spread(&part, stand, noises)?;
+            Some((Part { spread: Some(spread), ..part }, noises.clone()))
         };
-        open.filter_map(part).collect()
+        let mut all: Vec<(Part, Noises)> = starts.into_par_iter().filter_map(part).collect();
+        all.extend(self.jumping(stand, taken, &quiet));
+        all
+    }
+
+    /// Functions that stay and then jump.
+    fn jumping(&self, stand: &Stand, taken: &[&str], quiet: &Noises) -> Vec<(Part, Noises)> {
+        /// What is switched is found on knots this many blocks apart.
+        const BLOCKS: f64 = 2.0;
+        /// Between jumps a function wanders by its size in so many times its steps, and jumps find their own size.
+        const LENGTHS: f64 = 200.0;
+        const SIZE: f64 = 0.3;
+        let switched = self.pool.trials.iter().filter(|trial| {
+            let cause = self.cause(trial);
+            cause.is_function()
+                && cause.id == "auxiliary_power"
+                && !taken.contains(&cause.id)
+                && self.apart(trial, &stand.parts)
+        });
+        let step = BLOCKS * self.system.block_s;
+        let part = |trial: &Trial| {
+            let size = SIZE * self.cause(trial).terms[0].scale;
+            let spread = Spread { length: LENGTHS * step, size, jumps: Some(Jumps::unknown(step)) };
+            (Part { trial: trial.clone(), spread: Some(spread) }, quiet.clone())
+        };
+        switched.map(part).collect()
+    }
+
+    /// The noise that neighbouring rows show of what a set leaves, by the median of their second differences.
+    fn quiet(&self, stand: &Stand) -> Noises {
+        /// From the median of magnitudes to a standard deviation, for a normal distribution.
+        const NORMAL: f64 = 1.4826;
+        /// Rows that share no block lie so far apart.
+        const APART: usize = 2;
+        /// Variance of a second difference over that of a row.
+        const SECOND: f64 = 6.0;
+        let of = |(number, noise): (usize, &Noise)| {
+            let own = self.system.chunks.iter().zip(&stand.left);
+            let own = own.filter(|(chunk, _)| chunk.balance == number && self.fit[chunk.run]);
+            let differences: Vec<f64> = own
+                .flat_map(|(_, left)| {
+                    let last = left.len().saturating_sub(2 * APART);
+                    (0..last).map(|row| (left[row] - 2.0 * left[row + APART] + left[row + 2 * APART]).abs())
+                })
+                .collect();
+            if differences.is_empty() {
+                return *noise;
+            }
+            let variance = (NORMAL * median(&differences)).powi(2) / SECOND;
+            if variance > 0.0 && variance < noise.sensor + noise.process {
+                Noise { sensor: variance, process: 0.0, persistence: 0.0, ..*noise }
+            } else {
+                *noise
+            }
+        };
+        Noises(stand.noises.0.iter().enumerate().map(of).collect())
     }
 
     /// Length and size that make the recordings most likely: the length at the usual size first, then the size.
-    fn best_spread(&self, part: &Part, stand: &Stand) -> Option<Spread> {
+    fn best_spread(&self, part: &Part, stand: &Stand, noises: &Noises) -> Option<Spread> {
         const SIZES: [f64; 4] = [0.1, 0.3, 3.0, 10.0];
         let cause = self.cause(&part.trial);
         let mut parts = stand.parts.clone();
@@ -102,7 +168,7 @@ impl State<'_> {
         let sd: Vec<f64> = used.iter().map(|column| all_sd[*column]).collect();
         let places: Vec<usize> = (0..used.len()).collect();
         let chunks = &self.system.chunks;
-        let whitened = Whitened::new(chunks, &self.system.residual, &columns, &stand.noises)?;
+        let whitened = Whitened::new(chunks, &self.system.residual, &columns, noises)?;
         let profile = self.profile(&part.trial);
         let without = self.without_functions(&whitened, &self.profiles(&stand.parts), self.fit)?;
         let evidence = |spread: &Spread| {
@@ -112,6 +178,8 @@ impl State<'_> {
         };
         let lengths: &[f64] = match cause.form {
             Form::OverPosition => &[5.0, 15.0, 50.0, 150.0, 450.0],
+            // A tank fills and empties; what comes and goes faster is a force.
+            _ if cause.id == "payload_change" => &[20.0, 80.0, 320.0],
             _ => &[5.0, 20.0, 80.0, 320.0],
         };
         let usual = cause.terms[0].scale;
@@ -121,8 +189,8 @@ impl State<'_> {
         };
         let longest = profile.longest();
         let possible = lengths.iter().copied().filter(|length| *length < longest);
-        let (gain, spread) = best_of(possible.map(|length| Spread { length, size: usual }).collect())?;
-        let sizes = SIZES.iter().map(|share| Spread { size: share * usual, ..spread }).collect();
+        let (gain, spread) = best_of(possible.map(|length| Spread { length, size: usual, jumps: None }).collect())?;
+        let sizes = SIZES.iter().map(|share| Spread { size: share * usual, ..spread.clone() }).collect();
         let (other_gain, other) = best_of(sizes)?;
         Some(if other_gain > gain { other } else { spread })
     }

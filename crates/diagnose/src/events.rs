@@ -40,7 +40,7 @@ const LENGTHS: [usize; 10] = [2, 3, 5, 8, 13, 21, 34, 55, 89, 144];
 /// At most so many spells in a chunk.
 const MOST: usize = 6;
 /// A braked vehicle slows down at least like this [m/s²].
-const BRAKED_M_S2: f64 = -0.25;
+pub const BRAKED_M_S2: f64 = -0.25;
 
 /// The spells of the motion balance, where there are some.
 pub fn events(case: &Case, system: &System, found: &Found) -> Vec<Event> {

@@ -22,8 +22,10 @@ pub struct Fault {
 /// A value is stuck that stays the same for so long [s] and so many samples.
 const STUCK_S: f64 = 1.0;
 const STUCK_SAMPLES: usize = 15;
-/// Elsewhere a channel that can stick changes from sample to sample, but for this share.
-const STILL: f64 = 0.1;
+/// And so many times as long as the channel usually holds a value: sensors are slower than the log, and coarse.
+const HELD: f64 = 8.0;
+/// What is usual: all but this share of the samples.
+const UNUSUAL: f64 = 0.05;
 /// A channel is coarse where this share of the samples repeats the one before while the vehicle moves.
 const REPEATED: f64 = 0.35;
 /// A coarse channel mostly changes by fewer steps than this.
@@ -32,6 +34,8 @@ const FEW_STEPS: f64 = 2.5;
 const GAP: f64 = 3.5;
 /// Lost time that matters, as a share.
 const LOST: f64 = 0.01;
+/// Buses give torques in steps of about a per cent of their range; that is no fault.
+const BUS: f64 = 0.025;
 /// Below this the vehicle stands, and channels may well be still [m/s].
 const SLOWEST_M_S: f64 = 0.5;
 
@@ -55,6 +59,7 @@ pub fn faults(drives: &[Recorded]) -> (Vec<Fault>, Vec<Vec<bool>>) {
         } else if let Some(fault) = coarse(drives, name) {
             all.push(fault);
         }
+        all.extend(missing(drives, name));
     }
     all.extend(lost(drives));
     (all, usable)
@@ -86,6 +91,23 @@ fn still(values: &[f64]) -> Vec<(usize, usize)> {
     all
 }
 
+/// For how many samples a channel holds a value, all but the longest stretches that make up [`UNUSUAL`] of the samples and
+/// the one that is longest of all.
+fn usual_length(equal: &[(usize, usize)], samples: usize) -> f64 {
+    let mut lengths: Vec<usize> = equal.iter().map(|(from, to)| to - from + 1).collect();
+    lengths.sort_unstable();
+    let longest = lengths.pop().unwrap_or(1);
+    let beyond = UNUSUAL * (samples - longest.min(samples)) as f64;
+    let mut seen = 0;
+    while let Some(length) = lengths.pop() {
+        seen += length;
+        if seen as f64 > beyond {
+            return length as f64;
+        }
+    }
+    1.0
+}
+
 fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fault> {
     let mut stretches = Vec::new();
     let mut runs = 0;
@@ -95,6 +117,7 @@ fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fa
         let Some(values) = trace.get(name) else { continue };
         let time_s = trace.time_s();
         let equal = still(values);
+        let enough = HELD * usual_length(&equal, values.len());
         let long: Vec<(usize, usize)> = equal
             .iter()
             .copied()
@@ -103,13 +126,11 @@ fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fa
                 moving
                     && values[*from] != 0.0
                     && to - from >= STUCK_SAMPLES
+                    && (to - from) as f64 >= enough
                     && time_s[*to] - time_s[*from] >= STUCK_S
             })
             .collect();
-        let inside: usize = long.iter().map(|(from, to)| to - from).sum();
-        let repeated: usize = equal.iter().map(|(from, to)| to - from).sum();
-        let elsewhere = (repeated - inside) as f64 / (values.len() - inside).max(1) as f64;
-        if long.is_empty() || elsewhere > STILL {
+        if long.is_empty() {
             continue;
         }
         runs += 1;
@@ -153,7 +174,9 @@ fn coarse(drives: &[Recorded], name: &str) -> Option<Fault> {
     let multiples = steps.iter().filter(whole).count() as f64 / steps.len() as f64;
     // A channel that is held between samples repeats itself too, but then changes by many of its smallest steps.
     let usual = steps[steps.len() / 2];
-    let coarse = repeated as f64 > REPEATED * count as f64
+    let torque = name.ends_with("_n_m") || name == "tractive_force_n";
+    let coarse = (!torque || step > BUS * reach(drives, name))
+        && repeated as f64 > REPEATED * count as f64
         && multiples > 0.97
         && usual < FEW_STEPS * step
         && steps.len() > 50;
@@ -163,6 +186,46 @@ fn coarse(drives: &[Recorded], name: &str) -> Option<Fault> {
         size: step,
         unit: headland_units::unit_of_name(name).map_or_else(|| "1".to_owned(), |unit| unit.symbol),
         stretches: Vec::new(),
+    })
+}
+
+/// How far a channel reaches over all runs.
+fn reach(drives: &[Recorded], name: &str) -> f64 {
+    let values = || {
+        let traces = drives.iter().filter_map(|drive| drive.measured.trace.get(name));
+        traces.flatten().copied().filter(|value| value.is_finite())
+    };
+    values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+}
+
+/// Values of a channel that are missing now and then.
+fn missing(drives: &[Recorded], name: &str) -> Option<Fault> {
+    let (mut lost, mut count) = (0usize, 0usize);
+    let mut stretches = Vec::new();
+    for drive in drives {
+        let Some(values) = drive.measured.trace.get(name) else { continue };
+        count += values.len();
+        let mut index = 0;
+        while index < values.len() {
+            if values[index].is_finite() {
+                index += 1;
+                continue;
+            }
+            let from = index;
+            while index < values.len() && !values[index].is_finite() {
+                index += 1;
+            }
+            lost += index - from;
+            stretches.push(place(drive, from.saturating_sub(1), index.min(values.len() - 1)));
+        }
+    }
+    // A channel that is missing for most of the time was not logged there, or not asked.
+    (lost as f64 > LOST * count as f64 && 2 * lost < count).then(|| Fault {
+        id: "dropout",
+        channel: name.to_owned(),
+        size: lost as f64 / count as f64,
+        unit: "1".to_owned(),
+        stretches,
     })
 }
 

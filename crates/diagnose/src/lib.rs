@@ -11,6 +11,7 @@
 
 mod balance;
 mod band;
+mod brakes;
 mod case;
 mod catalogue;
 mod change_points;
@@ -22,6 +23,7 @@ mod events;
 mod experiment;
 mod faults;
 mod gram;
+mod jumps;
 mod locate;
 mod losses;
 mod map;
@@ -40,6 +42,7 @@ mod sharpen;
 mod state;
 mod trial;
 mod unlisted;
+mod voltage;
 mod words;
 
 pub use balance::Kind;
@@ -78,10 +81,12 @@ pub fn diagnose(
     if !against.is_empty() {
         return report::inconclusive(&case, &sound, &against);
     }
+    let braked = if case.wanted("braking") { brakes::brakes(&case, &sound) } else { Vec::new() };
+    let sound = without(&case, &sound, &braked);
     let mut look = Look::at(&case, &sound)?;
     sensors_first(&mut case, &mut look, &sound)?;
     look.sharpen(&case)?;
-    let events = spells(&case, &mut look, &sound)?;
+    let events = spells(&case, &mut look, &sound, &braked)?;
     let Look { system, mut pool, found } = look;
     let found = unlisted::unlisted(&mut case, &system, &mut pool, found)?;
     let mut refined = refine::refine(&case, &system, &pool, &found)?;
@@ -171,29 +176,42 @@ fn sensors_first(case: &mut Case, look: &mut Look, sound: &[Vec<bool>]) -> Resul
     Ok(())
 }
 
+/// The samples that are usable and lie in no spell.
+fn without(case: &Case, usable: &[Vec<bool>], events: &[events::Event]) -> Vec<Vec<bool>> {
+    let mut outside = events::outside(&case.runs, events, balance::block_s(&case.runs));
+    for (outside, usable) in outside.iter_mut().zip(usable) {
+        for (outside, usable) in outside.iter_mut().zip(usable) {
+            *outside &= usable;
+        }
+    }
+    outside
+}
+
 /// Spells in single runs are set aside, and what every run has in common is looked for once more without them.
-fn spells(case: &Case, look: &mut Look, sound: &[Vec<bool>]) -> Result<Vec<events::Event>, DiagnoseError> {
+fn spells(
+    case: &Case,
+    look: &mut Look,
+    sound: &[Vec<bool>],
+    braked: &[events::Event],
+) -> Result<Vec<events::Event>, DiagnoseError> {
     // A function of time can imitate spells; it is looked at without.
     let timed = |one: &search::Accepted| {
         let cause = &case.causes[one.trial.cause];
         cause.id == "payload_change" && cause.is_function()
     };
-    let events = if look.found.accepted.iter().any(timed) {
+    let mut events = if look.found.accepted.iter().any(timed) {
         let plain = search::search_without(case, &look.system, &look.pool, &["payload_change"]);
         events::events(case, &look.system, plain.as_ref().unwrap_or(&look.found))
     } else {
         events::events(case, &look.system, &look.found)
     };
     if events.is_empty() || !case.wanted(events::name(&case.runs, &events)) {
-        return Ok(Vec::new());
+        return Ok(braked.to_vec());
     }
-    let mut usable = events::outside(&case.runs, &events, balance::block_s(&case.runs));
-    for (usable, sound) in usable.iter_mut().zip(sound) {
-        for (usable, sound) in usable.iter_mut().zip(sound) {
-            *usable &= sound;
-        }
-    }
+    let usable = without(case, sound, &events);
     *look = Look::at(case, &usable)?;
     look.sharpen(case)?;
+    events.extend_from_slice(braked);
+    events.sort_by(|one, other| one.run.cmp(&other.run).then(one.from_s.total_cmp(&other.from_s)));
     Ok(events)
 }

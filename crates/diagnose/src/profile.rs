@@ -1,7 +1,8 @@
 //! Causes whose parameter is a function: of the position along a path, or of time in one run.
 //!
 //! The function is a Gaussian process of Ornstein and Uhlenbeck on evenly spaced knots, linear in between. Its length and
-//! its size are those that make the recording most likely; so its freedom grows only as far as the data carry it.
+//! its size are those that make the recording most likely; so its freedom grows only as far as the data carry it. Where it
+//! may jump, its increments are as free as they need to be, one by one.
 //! Each path (or run) has knots of its own, which are eliminated before anything else is estimated.
 //! Source: Rasmussen and Williams, *Gaussian Processes for Machine Learning* (2006), sections 2.7 and B.2.1.
 
@@ -9,18 +10,21 @@ use crate::balance::System;
 use crate::band::{Band, Factor};
 use crate::catalogue::Form;
 use crate::gram::{Column, Reduced, Whitened};
+use crate::jumps::{Jumps, squares};
 use crate::recorded::Recorded;
 use crate::rows::{Chunk, Row};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// How a function is spread over knots.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Spread {
     /// Distance over which it forgets itself [m or s].
     pub length: f64,
     /// Its standard deviation, in the unit of the cause's parameter.
     pub size: f64,
+    /// Where it may jump.
+    pub jumps: Option<Jumps>,
 }
 
 /// The knots of one path or run.
@@ -55,6 +59,8 @@ pub struct Function {
     pub values: Vec<(DVector<f64>, DVector<f64>)>,
     /// How it is spread.
     pub spread: Spread,
+    /// Squares of its increments, with what is not known of them, in units of their usual variance.
+    pub squares: Vec<Vec<f64>>,
 }
 
 /// Knots of a group are at most so many: a drive of 25 minutes has as many rows of a second, and they tell no more.
@@ -110,7 +116,8 @@ impl<'a> Profile<'a> {
             .iter()
             .map(|(from, to)| {
                 let range = (to - from).max(1e-9);
-                let step = (spread.length / KNOTS_PER_LENGTH).max(range / MOST_KNOTS);
+                let wanted = spread.jumps.as_ref().map_or(spread.length / KNOTS_PER_LENGTH, |jumps| jumps.step);
+                let step = wanted.max(range / MOST_KNOTS);
                 // Between 2 and some hundreds.
                 #[allow(
                     clippy::cast_possible_truncation,
@@ -155,7 +162,7 @@ impl<'a> Profile<'a> {
             let Parts { matrix, mut cross } = parts;
             let factor = matrix.cholesky().ok_or(())?;
             factor.half_solve(&mut cross);
-            let log = factor.log_determinant() - log_precision(group, spread);
+            let log = factor.log_determinant() - log_precision(number, group, spread);
             Ok(Some((cross.transpose() * &cross, log)))
         };
         let taken: Result<Vec<_>, ()> = groups.par_iter().enumerate().map(of_group).collect();
@@ -185,16 +192,20 @@ impl<'a> Profile<'a> {
             let solved = parts.and_then(|Parts { matrix, cross }| Some((matrix.cholesky()?, cross)));
             let Some((factor, cross)): Option<(Factor, DMatrix<f64>)> = solved else {
                 let size = DVector::from_element(group.count, spread.size);
-                return (DVector::zeros(group.count), size);
+                return ((DVector::zeros(group.count), size), vec![1.0; group.count - 1]);
             };
             let mut right = cross.column(cross.ncols() - 1).into_owned();
             for (index, column) in used.iter().enumerate() {
                 right -= cross.column(*column) * beta[index];
             }
-            (factor.solve(&right), factor.inverse_diagonal().map(f64::sqrt))
+            let values = factor.solve(&right);
+            let usual = innovation(group, spread);
+            let squares = squares(&factor, &values, forgetting(group, spread));
+            let squares = squares.into_iter().map(|square| square / usual).collect();
+            ((values, factor.inverse_diagonals().0.map(f64::sqrt)), squares)
         };
-        let values = groups.par_iter().enumerate().map(of_group).collect();
-        Function { values, groups, spread: *spread }
+        let (values, squares) = groups.par_iter().enumerate().map(of_group).unzip();
+        Function { values, groups, spread: spread.clone(), squares }
     }
 
     fn parts(
@@ -215,7 +226,7 @@ impl<'a> Profile<'a> {
         // Whitened rows know all knots of their chunk, so the widest chunk makes the band.
         let reach =
             own.iter().map(|index| self.touched(*index, group)).map(|(low, high)| high - low).max()?;
-        let mut matrix = precision(group, spread, reach);
+        let mut matrix = precision(number, group, spread, reach);
         let mut cross = DMatrix::zeros(group.count, width + 1);
         for index in own {
             let chunk = &chunks[index];
@@ -294,25 +305,58 @@ fn forgetting(group: &Group, spread: &Spread) -> f64 {
     (-group.step / spread.length).exp()
 }
 
-/// The prior's precision, in a band that reaches at least so far.
-fn precision(group: &Group, spread: &Spread, reach: usize) -> Band {
+/// Usual variance of an increment.
+fn innovation(group: &Group, spread: &Spread) -> f64 {
     let phi = forgetting(group, spread);
-    let scale = 1.0 / (spread.size * spread.size * (1.0 - phi * phi));
-    let last = group.count - 1;
-    let mut band = Band::zeros(group.count, reach.max(1));
-    for row in 0..group.count {
-        band.add(row, row, if row == 0 || row == last { scale } else { scale * (1.0 + phi * phi) });
-        if row > 0 {
-            band.add(row, row - 1, -scale * phi);
+    spread.size * spread.size * (1.0 - phi * phi)
+}
+
+impl Spread {
+    /// Factor of the precision of an increment.
+    fn weight(&self, number: usize, increment: usize) -> f64 {
+        self.jumps.as_ref().map_or(1.0, |jumps| jumps.weight(number, increment))
+    }
+
+    /// As the increments of a function ask for it: each as free as it was found to be, and all of the size that suits them.
+    pub fn relaxed(&self, function: &Function) -> Self {
+        /// The size may change so much in a round.
+        const MOST: f64 = 3.0;
+        let Some(jumps) = &self.jumps else { return self.clone() };
+        let (mut sum, mut count) = (0.0, 0usize);
+        for (number, squares) in function.squares.iter().enumerate() {
+            for (increment, square) in squares.iter().enumerate() {
+                sum += jumps.weight(number, increment) * square;
+                count += 1;
+            }
         }
+        let growth = (sum / count.max(1) as f64).sqrt().clamp(1.0 / MOST, MOST);
+        let scaled = |squares: &Vec<f64>| squares.iter().map(|square| square / (growth * growth)).collect();
+        let squares = function.squares.iter().map(scaled).collect();
+        Self { size: self.size * growth, jumps: Some(Jumps::of(jumps.step, squares)), ..*self }
+    }
+}
+
+/// The prior's precision, in a band that reaches at least so far.
+fn precision(number: usize, group: &Group, spread: &Spread, reach: usize) -> Band {
+    let phi = forgetting(group, spread);
+    let usual = innovation(group, spread);
+    let mut band = Band::zeros(group.count, reach.max(1));
+    band.add(0, 0, 1.0 / (spread.size * spread.size));
+    for row in 1..group.count {
+        let scale = spread.weight(number, row - 1) / usual;
+        band.add(row, row, scale);
+        band.add(row, row - 1, -scale * phi);
+        band.add(row - 1, row - 1, scale * phi * phi);
     }
     band
 }
 
-/// ln |P| in closed form.
-fn log_precision(group: &Group, spread: &Spread) -> f64 {
-    let phi = forgetting(group, spread);
-    -(group.count as f64) * 2.0 * spread.size.ln() - (group.count - 1) as f64 * (1.0 - phi * phi).ln()
+/// ln |P| in closed form, and what a bound of the prior is below it, twice.
+fn log_precision(number: usize, group: &Group, spread: &Spread) -> f64 {
+    let increments = group.count - 1;
+    let weights: f64 = (0..increments).map(|increment| spread.weight(number, increment).ln()).sum();
+    let bound = spread.jumps.as_ref().map_or(0.0, |jumps| jumps.bound(number, increments));
+    weights - 2.0 * spread.size.ln() - increments as f64 * innovation(group, spread).ln() + 2.0 * bound
 }
 
 #[cfg(test)]
@@ -322,19 +366,19 @@ mod tests {
     #[test]
     fn the_closed_form_of_the_determinant_is_that_of_the_matrix() {
         let group = Group { from: 0.0, step: 3.0, count: 7 };
-        let spread = Spread { length: 10.0, size: 0.3 };
-        let direct = precision(&group, &spread, 1).cholesky().unwrap().log_determinant();
-        assert!((direct - log_precision(&group, &spread)).abs() < 1e-9);
+        let spread = Spread { length: 10.0, size: 0.3, jumps: None };
+        let direct = precision(0, &group, &spread, 1).cholesky().unwrap().log_determinant();
+        assert!((direct - log_precision(0, &group, &spread)).abs() < 1e-9);
     }
 
     #[test]
     fn the_precision_is_the_inverse_of_an_exponential_covariance() {
         let group = Group { from: 0.0, step: 3.0, count: 5 };
-        let spread = Spread { length: 10.0, size: 0.3 };
-        let factor = precision(&group, &spread, 1).cholesky().unwrap();
+        let spread = Spread { length: 10.0, size: 0.3, jumps: None };
+        let factor = precision(0, &group, &spread, 1).cholesky().unwrap();
         let row = factor.solve(&DVector::from_fn(5, |knot, _| f64::from(knot == 3)));
         let expected = 0.09 * (-6.0_f64 / 10.0).exp();
         assert!((row[1] - expected).abs() < 1e-12 && (row[3] - 0.09).abs() < 1e-12);
-        assert!((factor.inverse_diagonal()[2] - 0.09).abs() < 1e-12);
+        assert!((factor.inverse_diagonals().0[2] - 0.09).abs() < 1e-12);
     }
 }

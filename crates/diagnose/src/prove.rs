@@ -7,6 +7,7 @@ use crate::gram::Column;
 use crate::recorded::Recorded;
 use crate::refine::{Cured, Refined, said_with_all};
 use crate::said::Said;
+use crate::voltage::lost_w;
 use crate::sensors::corrected;
 use crate::trial::for_run;
 use crate::{Case, DiagnoseError};
@@ -209,7 +210,7 @@ pub fn reconstruct(
     let kind = system.kinds[cured.accepted.balance];
     let unit = match kind {
         Kind::Motion => "n",
-        Kind::Battery | Kind::Fuel => "w",
+        Kind::Battery | Kind::Voltage | Kind::Fuel => "w",
         Kind::Slip => "m_s",
         Kind::Parity if system.has(Kind::Motion) => "n",
         Kind::Parity => "m_s2",
@@ -222,6 +223,9 @@ pub fn reconstruct(
     let way = if unit == "n" { 1.0 } else { -1.0 };
     let told = |after: &[Said]| -> Vec<Vec<f64>> {
         let of_run = |(run, (before, after)): (&Recorded, (&Said, &Said))| {
+            if kind == Kind::Voltage {
+                return lost_w(run, before, after);
+            }
             change(kind, run, before, after).iter().map(|value| way * value).collect()
         };
         case.runs.iter().zip(bare.iter().zip(after)).map(of_run).collect()

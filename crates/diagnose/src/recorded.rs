@@ -2,7 +2,7 @@
 
 use headland_calibrate::study::{Measured, Study};
 use headland_sim::{Drive, LocalFit, Model, local_fit, travelled};
-use headland_trace::Trace;
+use headland_trace::{Channel, Trace};
 
 /// One recorded run with its motion.
 #[derive(Clone, Debug)]
@@ -27,6 +27,10 @@ pub struct Recorded {
 
 /// Below this speed friction at rest decides, and no balance of motion holds [m/s].
 pub const SLOWEST_M_S: f64 = 0.4;
+
+/// A gust that passes faster does not take hold of a whole vehicle, and what an anemometer says of it is mostly noise; so
+/// much of the time before and after a sample makes its wind [s].
+const GUST_S: f64 = 5.0;
 
 /// Prepares the runs of a study.
 pub fn recorded(study: &Study, recording: &headland_recording::Recording, model: &Model) -> Vec<Recorded> {
@@ -54,10 +58,41 @@ pub fn recorded(study: &Study, recording: &headland_recording::Recording, model:
             motion,
             path,
             pass,
-            measured: measured.clone(),
+            measured: Measured { trace: steady_wind(&measured.trace), ..measured.clone() },
         });
     }
     all
+}
+
+/// The trace with its wind averaged, as a vector, over [`GUST_S`] before and after; as it is where none was recorded.
+fn steady_wind(trace: &Trace) -> Trace {
+    let (Some(speed), Some(from)) = (trace.get("wind_speed_m_s"), trace.get("wind_direction_rad")) else {
+        return trace.clone();
+    };
+    let time_s = trace.time_s();
+    let parts = |of: fn(f64) -> f64| -> Vec<f64> {
+        let raw: Vec<f64> = speed.iter().zip(from).map(|(speed, from)| speed * of(*from)).collect();
+        local_fit(time_s, &raw, GUST_S).value
+    };
+    let (north, east) = (parts(f64::cos), parts(f64::sin));
+    let with = |own: &Channel| -> Option<Vec<f64>> {
+        let both = north.iter().zip(&east);
+        match own.name.as_str() {
+            "wind_speed_m_s" => Some(both.map(|(north, east)| north.hypot(*east)).collect()),
+            "wind_direction_rad" => {
+                Some(both.map(|(north, east)| east.atan2(*north).rem_euclid(std::f64::consts::TAU)).collect())
+            }
+            _ => None,
+        }
+    };
+    let Ok(mut made) = Trace::new(time_s.to_vec()) else { return trace.clone() };
+    for channel in trace.channels() {
+        let values = with(channel).unwrap_or_else(|| channel.values.clone());
+        if made.push(channel.name.clone(), values, channel.origin).is_err() {
+            return trace.clone();
+        }
+    }
+    made
 }
 
 impl Recorded {

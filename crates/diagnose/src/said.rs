@@ -3,6 +3,7 @@
 use crate::DiagnoseError;
 use crate::balance::Kind;
 use crate::recorded::Recorded;
+use crate::voltage::{residual_v, resistance_ohm};
 use headland_sim::{Drive, Inputs, Model, Replay, replay};
 use headland_trace::Trace;
 use rayon::prelude::*;
@@ -20,6 +21,10 @@ pub struct Said {
     pub wheel_speed_m_s: Vec<f64>,
     /// Power from the battery [W].
     pub battery_w: Option<Vec<f64>>,
+    /// Resistance of the battery [Ω].
+    pub resistance_ohm: Option<f64>,
+    /// What it leaves of the recorded voltage, fast parts only [V].
+    pub voltage_left_v: Vec<f64>,
     /// Mass flow of fuel [kg/s].
     pub fuel_kg_s: Option<Vec<f64>>,
 }
@@ -55,7 +60,7 @@ fn say(model: &Model, run: &Recorded, kinds: &[Kind]) -> Result<Said, DiagnoseEr
     let brake = modelled.get("brake_force_n");
     let resistance = |i: usize| tractive[i] - brake.map_or(0.0, |brake| brake[i]) - mass[i] * acceleration[i];
     let resistance_n = (0..tractive.len()).map(resistance).collect();
-    let powers = kinds.iter().any(|kind| matches!(kind, Kind::Battery | Kind::Fuel));
+    let powers = kinds.iter().any(|kind| matches!(kind, Kind::Battery | Kind::Voltage | Kind::Fuel));
     let by_torque =
         trace.get("motor_torque_n_m").is_some() && model.driveline.force_of_torque_n(1.0, 1.0).is_some();
     let by_torque = (powers && by_torque)
@@ -66,7 +71,13 @@ fn say(model: &Model, run: &Recorded, kinds: &[Kind]) -> Result<Said, DiagnoseEr
         (Some(voltage), Some(current)) => Some(voltage.iter().zip(current).map(|(u, i)| u * i).collect()),
         _ => None,
     };
+    let logged = |name: &str| trace.get(name).is_some();
+    let resistance_ohm = (powers && logged("battery_voltage_v") && logged("battery_current_a"))
+        .then(|| resistance_ohm(powered))
+        .flatten();
     Ok(Said {
+        voltage_left_v: resistance_ohm.map_or_else(Vec::new, |ohm| residual_v(run, ohm)),
+        resistance_ohm,
         resistance_n,
         slope_m_s2: slope(model, &modelled, &mass),
         wheel_speed_m_s: get("wheel_speed_m_s"),

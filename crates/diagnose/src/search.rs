@@ -420,7 +420,7 @@ impl State<'_> {
     }
 
     /// Whether every cause of a set is more than the ear can hear, and none is there to cancel another.
-    fn sensible(&self, stand: &Stand) -> bool {
+    pub fn sensible(&self, stand: &Stand) -> bool {
         let effects: Vec<Column> = stand.parts.iter().map(|part| stand.effect(self, part)).collect();
         let in_noise = |rows: &Column| -> Vec<f64> {
             let squares = self.system.mean_squares(rows, self.fit);

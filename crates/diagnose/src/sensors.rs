@@ -80,6 +80,7 @@ pub fn fault(case: &Case, system: &System, id: &str, step: f64) -> Result<Column
                     Kind::Parity => less("specific_force_m_s2", before, after),
                     Kind::Slip => less("wheel_speed_m_s", before, after),
                     // What drives the motor turns with the wheels: a wrong speed is a wrong power.
+                    Kind::Voltage => Vec::new(),
                     Kind::Battery | Kind::Fuel => change(kind, before, &said[run], &case.nominal[run]),
                 };
                 samples.iter().map(|value| value / step).collect()

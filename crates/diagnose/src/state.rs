@@ -110,6 +110,28 @@ impl<'a> State<'a> {
         false
     }
 
+    /// Whether the functions of a set stay within what their parameters can be, by two standard deviations and a tenth of
+    /// how far they reach, but for one knot in twenty.
+    pub fn functions_possible(&self, stand: &Stand) -> bool {
+        const SIGMAS: f64 = 2.0;
+        const SLACK: f64 = 0.1;
+        const MOST_BEYOND: f64 = 0.05;
+        stand.parts.iter().zip(&stand.functions).all(|(part, function)| {
+            let Some(function) = function else { return true };
+            let term = &self.cause(&part.trial).terms[part.trial.terms[0]];
+            let position = stand.position(part.trial.columns[0]);
+            let even = position.map_or(0.0, |position| stand.estimate.beta[position]);
+            let all = || function.values.iter().flat_map(|(values, sds)| values.iter().zip(sds.iter()));
+            let reach = all().fold(f64::NEG_INFINITY, |most, (value, _)| most.max(*value))
+                - all().fold(f64::INFINITY, |least, (value, _)| least.min(*value));
+            let beyond = all().filter(|(value, sd)| {
+                let (value, known) = (even + **value, SIGMAS * **sd + SLACK * reach);
+                value + known < term.low || value - known > term.high
+            });
+            beyond.count() as f64 <= MOST_BEYOND * all().count() as f64
+        })
+    }
+
     /// Cost of the choice of these causes.
     pub fn choices(&self, parts: &[Part]) -> f64 {
         parts.iter().map(|part| choice(self.cause(&part.trial))).sum()
@@ -124,7 +146,7 @@ impl<'a> State<'a> {
 
     /// The functions of a set, part by part.
     pub fn profiles(&self, parts: &[Part]) -> Vec<Option<(Profile<'a>, Spread)>> {
-        parts.iter().map(|part| Some((self.profile(&part.trial), part.spread?))).collect()
+        parts.iter().map(|part| Some((self.profile(&part.trial), part.spread.clone()?))).collect()
     }
 
     /// Products over the runs that are `fit`, without the functions.
@@ -186,6 +208,7 @@ impl<'a> State<'a> {
     /// Estimates a set of causes, and lets the noise follow.
     pub fn settle(&self, parts: &[Part], start: &Noises) -> Option<Stand> {
         const ROUNDS: usize = 12;
+        const LEAST_ROUNDS: usize = 8;
         /// A growth of ln p below this is none.
         const SETTLED: f64 = 0.02;
         let used = self.columns(parts);
@@ -193,11 +216,15 @@ impl<'a> State<'a> {
         let all_sd = self.sd();
         let sd: Vec<f64> = used.iter().map(|column| all_sd[*column]).collect();
         let places: Vec<usize> = (0..used.len()).collect();
-        let profiles = self.profiles(parts);
+        let mut parts = parts.to_vec();
+        let mut profiles = self.profiles(&parts);
         let chunks = &self.system.chunks;
         let mut noises = start.clone();
         let mut best: Option<Stand> = None;
-        for _ in 0..ROUNDS {
+        // Where a function may jump, its freedom has to be found first.
+        let jumps = parts.iter().any(|part| part.spread.as_ref().is_some_and(|spread| spread.jumps.is_some()));
+        let least = if jumps { LEAST_ROUNDS } else { 0 };
+        for round in 0..ROUNDS + least {
             let whitened = Whitened::new(chunks, &self.system.residual, &columns, &noises)?;
             let reduced = self.without_functions(&whitened, &profiles, self.fit)?;
             let estimate = reduced.estimate(&places, &sd)?;
@@ -213,14 +240,32 @@ impl<'a> State<'a> {
                     Some(made)
                 })
                 .collect();
-            let next = self.system.noises(&left, self.fit);
-            let score = estimate.log_evidence + self.heavy(&used, &estimate.beta) - self.choices(parts);
-            if best.as_ref().is_some_and(|one| score <= one.score + SETTLED) {
+            let next = if round >= least { self.system.noises(&left, self.fit) } else { noises.clone() };
+            let score = estimate.log_evidence + self.heavy(&used, &estimate.beta) - self.choices(&parts);
+            let better = best.as_ref().is_none_or(|one| score > one.score + SETTLED);
+            if !better && round >= least {
                 break;
             }
-            let parts = parts.to_vec();
-            best = Some(Stand { parts, used: used.clone(), noises, estimate, score, left, functions: made });
-            noises = next;
+            let spreads: Vec<Option<Spread>> = parts
+                .iter()
+                .zip(&made)
+                .map(|(part, made)| Some(part.spread.as_ref()?.relaxed(made.as_ref()?)))
+                .collect();
+            if better {
+                let (parts, used) = (parts.clone(), used.clone());
+                let noises = noises.clone();
+                best = Some(Stand { parts, used, noises, estimate, score, left, functions: made });
+            }
+            for ((part, profile), spread) in parts.iter_mut().zip(&mut profiles).zip(spreads) {
+                if let (Some((_, own)), Some(spread)) = (profile, &spread) {
+                    own.clone_from(spread);
+                }
+                part.spread = spread;
+            }
+            // Until then the noise stays what neighbouring rows show.
+            if round >= least {
+                noises = next;
+            }
         }
         best
     }

@@ -17,6 +17,8 @@ const MARGIN: f64 = 6.0;
 /// And by this share of what the listed causes bring, for each that they are fewer than three: the shape of a listed cause
 /// is known from elsewhere, and a formula that is free to bend follows a recording closer than any law of physics.
 const BETTER: f64 = 0.1;
+/// By this share where it needs fewer causes than they do: two of them that patch each other are no knowledge.
+const SIMPLER: f64 = 0.03;
 /// A law works in at least this share of the rows, by the participation ratio of its squares.
 const EVERYWHERE: f64 = 0.04;
 /// A wave takes so many blocks of samples.
@@ -86,21 +88,20 @@ fn beside(
     for parts in candidates {
         let Some(stand) = state.settle(&parts, &found.stand.noises) else { continue };
         for stand in [state.with_listed(&stand), Some(stand)].into_iter().flatten() {
+            let simpler = stand.parts.len() < found.stand.parts.len();
             if !state.impossible(&stand.parts, &stand.estimate)
+                && worth(&stand) > worth(&found.stand) + margin(&found, simpler)
                 && state.works_widely(&stand)
-                && !state.is_listed(&stand)
+                && (simpler || !state.is_listed(&stand))
+                && state.sensible(&stand)
+                && state.keeps_to_priors(&stand, &found.stand)
                 && best.as_ref().is_none_or(|best| worth(&stand) > worth(best))
             {
                 best = Some(stand);
             }
         }
     }
-    match best {
-        Some(best) if worth(&best) > worth(&found.stand) + margin(&found) => {
-            Ok(concluded(&state, best, &found).unwrap_or(found))
-        }
-        _ => Ok(found),
-    }
+    Ok(best.and_then(|best| concluded(&state, best, &found)).unwrap_or(found))
 }
 
 /// Whether a law only draws a map: several shapes along the path, which softer ground or slopes are by their definition.
@@ -109,14 +110,24 @@ fn is_map(law: &Law) -> bool {
     law.terms > 1 && law.names("x") && !others.into_iter().any(|(name, _)| law.names(name))
 }
 
-/// How much better than what was found a law has to be.
-fn margin(found: &Found) -> f64 {
+/// How much better than what was found a set with a law has to be.
+fn margin(found: &Found, simpler: bool) -> f64 {
     let listed = found.stand.parts.len();
-    let fewer = if listed == 0 { 0.0 } else { 3usize.saturating_sub(listed) as f64 };
-    MARGIN + BETTER * fewer * (worth(&found.stand) - worth(&found.first)).max(0.0)
+    let fewer = if listed == 0 { 0.0 } else { 3usize.saturating_sub(listed).max(usize::from(simpler)) as f64 };
+    let share = if simpler { SIMPLER } else { BETTER };
+    MARGIN + share * fewer * (worth(&found.stand) - worth(&found.first)).max(0.0)
 }
 
 impl State<'_> {
+    /// Whether a set leaves the free parameters where they are known to be, or at least where another has them: a law that
+    /// takes the place of what is known says nothing new.
+    fn keeps_to_priors(&self, stand: &Stand, other: &Stand) -> bool {
+        /// Nothing that is known is so many standard deviations wrong.
+        const MOST: f64 = 3.5;
+        let off = |stand: &Stand, column: usize| stand.estimate.beta[column].abs() / self.pool.sd[column];
+        (0..self.pool.nuisance).all(|column| off(stand, column) < MOST.max(off(other, column)))
+    }
+
     /// Whether the laws of a set are at work in more than a few rows.
     fn works_widely(&self, stand: &Stand) -> bool {
         let laws = stand.parts.iter().filter(|part| self.cause(&part.trial).law.is_some());

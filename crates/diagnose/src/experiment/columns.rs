@@ -188,7 +188,7 @@ impl<'a, 'b> Columns<'a, 'b> {
         &mut self,
         trials: &[Trial],
         common: &[usize],
-        like: Option<Spread>,
+        like: Option<&Spread>,
     ) -> Result<Option<Vec<usize>>, DiagnoseError> {
         /// The estimate with columns at one size is the size for the next.
         const ROUNDS: usize = 2;
@@ -214,7 +214,7 @@ impl<'a, 'b> Columns<'a, 'b> {
     }
 
     /// The function that a cause over position would have, beside the columns `used`.
-    fn function_of(&self, trial: &Trial, used: &[usize], like: Option<Spread>) -> Option<Function> {
+    fn function_of(&self, trial: &Trial, used: &[usize], like: Option<&Spread>) -> Option<Function> {
         const LENGTHS_M: [f64; 4] = [15.0, 50.0, 150.0, 450.0];
         let cause = &self.case.causes[trial.cause];
         if cause.form != Form::OverPosition {
@@ -230,7 +230,7 @@ impl<'a, 'b> Columns<'a, 'b> {
         let lengths = like.map_or(LENGTHS_M.to_vec(), |spread| vec![spread.length]);
         let mut best: Option<(f64, Function)> = None;
         for length in lengths {
-            let spread = Spread { length, size: cause.terms[0].scale };
+            let spread = Spread { length, size: cause.terms[0].scale, jumps: None };
             let Some(reduced) = profile.eliminate(&whitened, chunks, fit, &spread) else { continue };
             let Some(estimate) = reduced.estimate(&all, &sd) else { continue };
             if best.as_ref().is_none_or(|(known, _)| estimate.log_evidence > *known) {

@@ -174,7 +174,7 @@ fn judge(
         let kept = others.iter().filter(|(cause, _)| rival.is_none_or(|rival| rival.cause != *cause));
         nuisance.iter().copied().chain(kept.flat_map(|(_, columns)| columns.iter().copied())).collect()
     };
-    let like = cured.function().map(|function| function.spread);
+    let like = cured.function().map(|function| &function.spread);
     let mut sides: Vec<(&Candidate, Vec<usize>)> = Vec::new();
     // One value throughout is what a function may be as well: no run tells the two apart but where the ground goes on.
     let even = cured.cause.even().map(|(even, _)| even);

@@ -77,7 +77,8 @@ fn runs(count: usize) -> String {
 const WORSE: f64 = 1.02;
 
 fn looked_at(told: &Told) -> String {
-    let names: Vec<String> = told.balances.iter().map(|balance| balance.name().to_owned()).collect();
+    let mut names: Vec<String> = told.balances.iter().map(|balance| balance.name().to_owned()).collect();
+    names.dedup();
     let (balance, were) = if names.len() == 1 { ("balance", "was") } else { ("balances", "were") };
     let fitted = told.fit.fitted.runs.len();
     let verb = if fitted == 1 { "was" } else { "were" };

@@ -51,6 +51,7 @@ fn amount(one: &Mismatch, full: bool) -> String {
     match one.balance {
         Kind::Motion => beyond("resistance"),
         Kind::Battery => beyond("power"),
+        Kind::Voltage => beyond("voltage"),
         Kind::Fuel => beyond("power in the fuel"),
         Kind::Slip => beyond("speed of the wheels"),
         Kind::Parity if full => format!("the accelerometer reads {size} {way} than the speed says"),

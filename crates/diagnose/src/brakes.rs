@@ -1,0 +1,187 @@
+//! Service brakes that nobody recorded, told before anything else is looked for.
+//!
+//! F_b = F − R − m dv/dt, where the vehicle slows down and is not driven. A braked vehicle slows down several times harder
+//! than its resistances could make it, and only while nothing drives it: no other cause does both. Left in the rows, such
+//! stretches would pass for noise, and hide everything else. A brake switch says when, and not how hard.
+//! Source: Newton's second law along the path; the threshold is robust, by the median absolute deviation
+//! (Huber and Ronchetti, *Robust Statistics* (2009), chapter 5).
+
+use crate::Case;
+use crate::events::{BRAKED_M_S2, Event};
+use crate::recorded::{Recorded, SLOWEST_M_S};
+use crate::said::Said;
+use headland_calibrate::statistics::{quantile_of_sorted, sorted};
+use headland_units::constants::STANDARD_GRAVITY_M_S2;
+
+/// What is averaged before it is judged [s]: a pedal is not pressed for less.
+const WINDOW_S: f64 = 0.4;
+/// A braking force is so many times what is usually left over, by its median absolute deviation.
+const SIGMAS: f64 = 6.0;
+/// And so many times what is left over in all but two of a hundred samples that are driven.
+const DRIVEN: f64 = 2.0;
+/// And this share of the weight: less is what a slope or the ground could do.
+const WEAKEST: f64 = 0.04;
+/// And so many times what the model has to hold the vehicle back.
+const RESISTANCES: f64 = 1.0;
+/// A vehicle is driven where the recorded force is more than this share of what is left over.
+const IDLE: f64 = 0.25;
+/// A stretch goes on while what is left over is more than this share of its greatest.
+const FADED: f64 = 0.15;
+/// From the median absolute deviation to a standard deviation, for a normal distribution.
+const NORMAL: f64 = 1.4826;
+/// Fewer samples tell nothing of what is usual.
+const FEWEST: usize = 50;
+
+/// Stretches in which somebody braked.
+pub fn brakes(case: &Case, sound: &[Vec<bool>]) -> Vec<Event> {
+    let excess: Vec<Option<Vec<f64>>> = case
+        .runs
+        .iter()
+        .zip(&case.nominal)
+        .zip(sound)
+        .map(|((run, said), sound)| excess_n(run, said, sound))
+        .collect();
+    let each = |wanted: &dyn Fn(&Recorded, &Said, usize, f64) -> bool| {
+        let mut all = Vec::new();
+        for ((run, said), excess) in case.runs.iter().zip(&case.nominal).zip(&excess) {
+            for (index, value) in excess.iter().flatten().enumerate() {
+                if value.is_finite() && wanted(run, said, index, *value) {
+                    all.push(*value);
+                }
+            }
+        }
+        sorted(&all)
+    };
+    let all = each(&|_, _, _, _| true);
+    let driven = each(&|run, said, index, _| force(run, index) > 0.5 * said.resistance_n[index].max(0.0));
+    if all.len() < FEWEST || driven.len() < FEWEST {
+        return Vec::new();
+    }
+    let middle = quantile_of_sorted(&all, 0.5);
+    let deviations = sorted(&all.iter().map(|value| (value - middle).abs()).collect::<Vec<_>>());
+    let sd_n = NORMAL * quantile_of_sorted(&deviations, 0.5);
+    let usual_n = (SIGMAS * sd_n).max(DRIVEN * quantile_of_sorted(&driven, 0.98)).max(0.0);
+    let of_run = |(number, excess): (usize, &Option<Vec<f64>>)| {
+        let excess = excess.as_deref().unwrap_or(&[]);
+        stretches(&case.runs[number], &case.nominal[number], excess, usual_n)
+            .into_iter()
+            .map(|(from, to)| event(&case.runs[number], number, excess, (from, to), sd_n))
+            .filter(|event| event.force_n > SIGMAS * event.sd_n)
+            .collect::<Vec<Event>>()
+    };
+    excess.iter().enumerate().flat_map(of_run).collect()
+}
+
+fn force(run: &Recorded, index: usize) -> f64 {
+    run.force_n.as_ref().map_or(f64::NAN, |force| force[index])
+}
+
+/// What holds a run back beside the model's resistances [N], averaged over a short window; NaN where it is not known.
+fn excess_n(run: &Recorded, said: &Said, sound: &[bool]) -> Option<Vec<f64>> {
+    run.force_n.as_ref()?;
+    let trace = &run.measured.trace;
+    let coasting = trace.get("coasting");
+    let raw: Vec<f64> = (0..trace.len())
+        .map(|index| {
+            let known = sound[index]
+                && run.motion.value[index] > SLOWEST_M_S
+                && coasting.is_none_or(|values| values[index] < 0.5);
+            let left = force(run, index)
+                - said.resistance_n[index]
+                - said.effective_mass_kg[index] * run.motion.slope[index];
+            if known { left } else { f64::NAN }
+        })
+        .collect();
+    Some(averaged(trace.time_s(), &raw))
+}
+
+/// Mean over [`WINDOW_S`] around each sample that is known.
+fn averaged(time_s: &[f64], values: &[f64]) -> Vec<f64> {
+    let (mut from, mut to) = (0, 0);
+    (0..values.len())
+        .map(|index| {
+            while time_s[from] < time_s[index] - 0.5 * WINDOW_S {
+                from += 1;
+            }
+            while to < values.len() && time_s[to] <= time_s[index] + 0.5 * WINDOW_S {
+                to += 1;
+            }
+            let known = values[from..to].iter().filter(|value| value.is_finite());
+            let (sum, count) = known.fold((0.0, 0usize), |(sum, count), value| (sum + value, count + 1));
+            if values[index].is_finite() { sum / count.max(1) as f64 } else { f64::NAN }
+        })
+        .collect()
+}
+
+/// First and last sample of every stretch that is braked.
+fn stretches(run: &Recorded, said: &Said, excess: &[f64], usual_n: f64) -> Vec<(usize, usize)> {
+    let idle = |index: usize| force(run, index) < IDLE * excess[index];
+    let switch = run.measured.trace.get("brake");
+    let braked = |index: usize| {
+        if let Some(switch) = switch {
+            return switch[index] >= 0.5 && excess[index].is_finite();
+        }
+        let weight_n = said.effective_mass_kg[index] * STANDARD_GRAVITY_M_S2;
+        let least = usual_n.max(WEAKEST * weight_n).max(RESISTANCES * said.resistance_n[index]);
+        excess[index] > least && idle(index) && run.motion.slope[index] < BRAKED_M_S2
+    };
+    let mut all: Vec<(usize, usize)> = Vec::new();
+    let mut index = 0;
+    while index < excess.len() {
+        if !braked(index) {
+            index += 1;
+            continue;
+        }
+        let mut end = index;
+        while end + 1 < excess.len() && braked(end + 1) {
+            end += 1;
+        }
+        let peak = excess[index..=end].iter().copied().fold(0.0, f64::max);
+        // A switch says when it begins and ends; without one the force does.
+        let goes_on = |at: usize| switch.is_none() && excess[at] > FADED * peak && idle(at);
+        let mut begin = index;
+        while begin > 0 && goes_on(begin - 1) {
+            begin -= 1;
+        }
+        while end + 1 < excess.len() && goes_on(end + 1) {
+            end += 1;
+        }
+        match all.last_mut() {
+            Some(last) if begin <= last.1 + 1 => last.1 = end,
+            _ => all.push((begin, end)),
+        }
+        index = end + 1;
+    }
+    let time_s = run.measured.trace.time_s();
+    all.into_iter().filter(|(from, to)| time_s[*to] - time_s[*from] >= WINDOW_S).collect()
+}
+
+fn event(run: &Recorded, number: usize, excess: &[f64], (from, to): (usize, usize), sd_n: f64) -> Event {
+    let time_s = run.measured.trace.time_s();
+    let inside = excess[from..=to].iter().filter(|value| value.is_finite());
+    let (sum, count) = inside.fold((0.0, 0usize), |(sum, count), value| (sum + value, count + 1));
+    let force_n = sum / count.max(1) as f64;
+    let lasted_s = time_s[to] - time_s[from];
+    // As many values that know nothing of each other as there are windows.
+    let sd_n = sd_n / (lasted_s / WINDOW_S).max(1.0).sqrt();
+    let gain = 0.5 * (force_n / sd_n).powi(2);
+    Event { run: number, from_s: time_s[from], to_s: time_s[to], force_n, sd_n, gain }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mean_over_a_window_leaves_out_what_is_not_known() {
+        let time_s: Vec<f64> = (0..10).map(|index| 0.1 * f64::from(index)).collect();
+        let mut values = vec![1.0; 10];
+        values[5] = f64::NAN;
+        values[6] = 5.0;
+        let mean = averaged(&time_s, &values);
+        assert!(mean[5].is_nan());
+        // 0.3 to 0.7 s hold 1, 1, 1... without the fifth: (1 + 1 + 5 + 1) / 4 around 0.5 s; at 0.7 s 0.5 to 0.9: (5 + 1 + 1 + 1) / 4.
+        assert!((mean[7] - 2.0).abs() < 1e-12, "{}", mean[7]);
+        assert!((mean[1] - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,7 +1,7 @@
 //! The ground's resistance to rolling, and what a wheel finds there.
 
-use crate::Place;
 use crate::tyre::Tyre;
+use crate::{Place, Refusal};
 use std::fmt::Debug;
 
 /// A vehicle pressing on the ground.
@@ -72,5 +72,23 @@ pub trait Soil: Debug + Send + Sync {
     /// Whether it speaks of single wheels only, so that a vehicle without axles cannot roll on it.
     fn needs_axles(&self) -> bool {
         false
+    }
+
+    /// Whether it is made of other soils, which `ground.soils` names.
+    fn needs_soils(&self) -> bool {
+        false
+    }
+
+    /// Takes the soils that it is made of, by their names.
+    ///
+    /// # Errors
+    /// [`Refusal`] where it is made of none, or of others.
+    fn adopt(&mut self, soils: Vec<(String, Box<dyn Soil>)>) -> Result<(), Refusal> {
+        let names: Vec<String> = soils.into_iter().map(|(name, _)| name).collect();
+        Err(Refusal {
+            parameter: "soils".to_owned(),
+            found: names.join(", "),
+            expected: "none: this soil is the same everywhere".to_owned(),
+        })
     }
 }

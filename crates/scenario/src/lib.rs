@@ -16,6 +16,7 @@ mod cycle_tests;
 mod document;
 mod error;
 mod fault;
+mod ground;
 mod location;
 mod piece;
 mod plugins;

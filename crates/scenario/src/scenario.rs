@@ -6,6 +6,7 @@ use crate::cycle::cycle;
 use crate::document::Document;
 use crate::error::ScenarioError;
 use crate::fault;
+use crate::ground;
 use crate::plugins::{Remark, bounded, build, build_all};
 use crate::schema::{DriveFile, InputFile, ScenarioFile};
 use crate::tree::{Node, Shape};
@@ -291,9 +292,7 @@ fn model(
     let (_, terrain) =
         build(document, terrain, &registry.terrains, "headland plugins terrain", &folder, remarks)?;
     let soil = match (document.find("ground.soil"), file.vehicle.road_load.is_some()) {
-        (Some(node), false) => {
-            Some(build(document, node, &registry.soils, "headland plugins soil", &folder, remarks)?.1)
-        }
+        (Some(node), false) => Some(ground::soil(document, node, registry, &folder, remarks)?),
         (None, true) => None,
         (Some(_), true) => {
             return Err(misfit(

@@ -75,6 +75,10 @@ pub struct GroundFile {
     pub terrain: Any,
     #[allow(dead_code, reason = "read by the registry")]
     pub soil: Option<Any>,
+    #[allow(clippy::zero_sized_map_values, reason = "the registry reads the values")]
+    #[allow(dead_code, reason = "read by the registry")]
+    #[serde(default)]
+    pub soils: BTreeMap<String, Any>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -129,8 +129,9 @@ pub(crate) struct Asked<'a> {
     pub effective_mass_kg: f64,
     /// Forces that act whether the vehicle moves or not, forward [N].
     pub free_n: f64,
-    /// Those of the air among them [N].
+    /// Those of the air and of the slope among them, this one backward [N].
     pub air_n: f64,
+    pub slope_n: f64,
     /// Everything but its force and its speed.
     pub demand: Demand,
 }
@@ -162,7 +163,6 @@ impl Asked<'_> {
 /// What driveline and ground make of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rolled {
-    pub situation: Situation,
     pub demand: Demand,
     pub delivery: Delivery,
     /// Resistance of the ground [N].
@@ -229,41 +229,15 @@ impl Model {
             effective_mass_kg,
             free_n,
             air_n,
-            demand,
-        };
-        let rolled = match (&self.axles, &self.soil) {
-            (Some(axles), Some(soil)) => {
-                self.on_wheels((axles, &**soil), &asked, &sums, rates, &mut scratch.wheels)
-            }
-            _ => self.rolling(&asked, &sums, rates),
-        };
-        let Rolled { delivery, demand, rolling_m_s, .. } = rolled;
-        let instant = Instant {
-            acceleration_m_s2: rolled.acceleration_m_s2,
-            situation: rolled.situation,
-            effective_mass_kg,
-            demand,
-            delivery,
-            soil_n: rolled.ground_n,
-            air_n,
             slope_n,
-            brake_n: if rolled.brake_n.is_finite() { rolled.brake_n } else { 0.0 },
-            drawbar_n: sums.drawbar_n,
-            pushed_n: sums.task_push_n,
-            auxiliary_power_w: sums.auxiliary_power_w,
-            pto_power_w: sums.pto_power_w,
-            hydraulic_power_w: sums.hydraulic_power_w,
-            wheel_speed_m_s: demand.speed_m_s,
-            slip_w_n: if sums.slip_per_n == 0.0 {
-                0.0
-            } else {
-                delivery.force_n * (demand.speed_m_s - rolling_m_s) / sums.slip_per_n
-            },
-            slip: rolled.slip,
-            slip_w: delivery.force_n * rolling_m_s - rolled.traction_n * speed_m_s,
+            demand,
         };
-        book(&instant, rolled.way, given, slots, &scratch.actions, powers);
-        instant
+        if let (Some(axles), Some(soil)) = (&self.axles, &self.soil) {
+            // Everything goes there as a copy: what another function may look at does not stay in registers here.
+            return self.carried((axles, &**soil), asked, sums, slots, rates, powers, scratch);
+        }
+        let rolled = self.rolling(&asked, &sums, rates);
+        tell(&asked, &sums, &rolled, slots, &scratch.actions, powers)
     }
 
     /// The forces of a vehicle that rolls as a whole.
@@ -311,7 +285,6 @@ impl Model {
             delivery.source_power_w += (force_n - delivery.force_n) * demand.speed_m_s;
             delivery.force_n = force_n;
         }
-        situation.tractive_force_n = delivery.force_n;
         let brake_n = match command {
             Command::Accelerate(_) | Command::Push(_) if direction != 0.0 => {
                 let short_n = (delivery.force_n - wanted_n) * direction;
@@ -325,7 +298,6 @@ impl Model {
         let resisting_n = held_n + lost_n(delivery.force_n) + brake_n;
         let (way, acceleration_m_s2) = asked.moves(driving_n, resisting_n);
         Rolled {
-            situation,
             demand,
             delivery,
             ground_n,
@@ -513,6 +485,47 @@ pub(crate) struct Sums {
     pub drawbar_n: f64,
     pub pto_power_w: f64,
     pub hydraulic_power_w: f64,
+}
+
+/// Puts the instant together, and writes the power of every account [W].
+#[inline(always)]
+pub(crate) fn tell(
+    asked: &Asked,
+    sums: &Sums,
+    rolled: &Rolled,
+    slots: &Slots,
+    actions: &[Action],
+    powers: &mut [f64],
+) -> Instant {
+    let Rolled { delivery, demand, rolling_m_s, .. } = *rolled;
+    let mut situation = asked.situation;
+    situation.tractive_force_n = delivery.force_n;
+    let instant = Instant {
+        acceleration_m_s2: rolled.acceleration_m_s2,
+        situation,
+        effective_mass_kg: asked.effective_mass_kg,
+        demand,
+        delivery,
+        soil_n: rolled.ground_n,
+        air_n: asked.air_n,
+        slope_n: asked.slope_n,
+        brake_n: if rolled.brake_n.is_finite() { rolled.brake_n } else { 0.0 },
+        drawbar_n: sums.drawbar_n,
+        pushed_n: sums.task_push_n,
+        auxiliary_power_w: sums.auxiliary_power_w,
+        pto_power_w: sums.pto_power_w,
+        hydraulic_power_w: sums.hydraulic_power_w,
+        wheel_speed_m_s: demand.speed_m_s,
+        slip_w_n: if sums.slip_per_n == 0.0 {
+            0.0
+        } else {
+            delivery.force_n * (demand.speed_m_s - rolling_m_s) / sums.slip_per_n
+        },
+        slip: rolled.slip,
+        slip_w: delivery.force_n * rolling_m_s - rolled.traction_n * situation.speed_m_s,
+    };
+    book(&instant, rolled.way, asked.given, slots, actions, powers);
+    instant
 }
 
 /// Writes the power of every account [W]; `way` is the direction in which resistances act.

@@ -7,7 +7,8 @@
 
 use crate::Model;
 use crate::axles::Axles;
-use crate::balance::{Asked, Command, MOST_SLIP, Rolled, Sums};
+use crate::balance::{Asked, Command, Instant, MOST_SLIP, Rolled, Scratch, Sums, tell};
+use crate::ledger::Slots;
 use crate::root::{Root, rising};
 use crate::wheels::{AxleState, FIRST_STEP, Grip, Stance, Stuck, TOLERANCE, WheelScratch};
 use headland_plugin::{Delivery, Demand, Soil};
@@ -46,9 +47,29 @@ struct Wanted {
 }
 
 impl Model {
-    /// The forces of a vehicle with axles.
+    /// The instant of a vehicle with axles.
+    #[allow(clippy::too_many_arguments, reason = "as in the balance, whose other branch this is")]
+    #[allow(
+        clippy::large_types_passed_by_value,
+        reason = "a reference would keep the other branch in memory"
+    )]
     #[inline(never)]
-    pub(crate) fn on_wheels(
+    pub(crate) fn carried(
+        &self,
+        ground: (&Axles, &dyn Soil),
+        asked: Asked,
+        sums: Sums,
+        slots: &Slots,
+        rates: &mut [f64],
+        powers: &mut [f64],
+        scratch: &mut Scratch,
+    ) -> Instant {
+        let rolled = self.on_wheels(ground, &asked, &sums, rates, &mut scratch.wheels);
+        tell(&asked, &sums, &rolled, slots, &scratch.actions, powers)
+    }
+
+    /// The forces of a vehicle with axles.
+    fn on_wheels(
         &self,
         (axles, soil): (&Axles, &dyn Soil),
         asked: &Asked,
@@ -105,14 +126,13 @@ impl Model {
         demand.force_n =
             self.govern(&situation, asked.command, asked.given, asked.layout, asked.states, rates);
         let (delivery, slip) = self.given(stance, asked, sums, rates, (&wanted, &mut demand));
-        situation.tractive_force_n = delivery.force_n;
         let grip = if stance.firm { stance.roll(asked.way() * delivery.force_n) } else { stance.grip(slip) };
         let rolled = moved(asked, sums, &wanted, &grip, (delivery, demand, slip));
         // The ground is what falls short where the driveline gives all that the ground could take.
         let short = !wanted.root.reached && wanted.root.at > 0.0 && delivery.force_n == demand.force_n;
         let stuck = short.then_some(Stuck::Slip { slip, most_n: grip.gross_n });
         let moment_n_m = self.moment_n_m(stance.axles, asked, sums, &rolled, &grip);
-        Tried { rolled: Rolled { situation, ..rolled }, stuck, slip, moment_n_m }
+        Tried { rolled, stuck, slip, moment_n_m }
     }
 
     /// The slip at which the ground gives what the command wants, and the force of the driveline for it.
@@ -273,7 +293,6 @@ fn moved(
     let resisting_n = ground_n + sums.resistance_n + sums.drawbar_n + lost_n(force_n) + brake_n;
     let (way, acceleration_m_s2) = asked.moves(driving_n, resisting_n);
     Rolled {
-        situation: asked.situation,
         demand,
         delivery,
         ground_n,

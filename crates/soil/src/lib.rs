@@ -16,6 +16,7 @@ mod slip_sinkage;
 mod testing;
 mod wismer_luth;
 mod wong_reece;
+mod zones;
 
 pub use bekker::Bekker;
 pub use brixius::{Brixius, Construction};
@@ -26,6 +27,7 @@ pub use pressure_speed_law::PressureSpeedLaw;
 pub use quadratic_speed_law::QuadraticSpeedLaw;
 pub use wismer_luth::WismerLuth;
 pub use wong_reece::WongReece;
+pub use zones::Zones;
 
 use headland_plugin::{Footing, Registry};
 
@@ -43,4 +45,5 @@ pub fn register(registry: &mut Registry) {
     registry.soil::<WismerLuth>();
     registry.soil::<Bekker>();
     registry.soil::<WongReece>();
+    registry.soil::<Zones>();
 }

@@ -8,6 +8,7 @@ pub mod diagnose;
 mod energy;
 mod motion;
 pub mod run;
+mod wheels;
 
 use headland_recording::Notice;
 use headland_report::{Axis, Cell, Item, Section, Table};

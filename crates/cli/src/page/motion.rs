@@ -1,5 +1,6 @@
 //! Plots of one run: forces, powers, where it drove.
 
+use super::wheels::of_an_axle;
 use headland_report::{Axis, Lines, Plot, ReportError, Series, build};
 use headland_trace::Trace;
 use headland_units::{stem, unit_of_name};
@@ -10,7 +11,7 @@ pub fn forces(trace: &Trace) -> Result<Plot, ReportError> {
         .channels()
         .iter()
         .filter(|channel| unit_of_name(&channel.name).is_some_and(|unit| unit.symbol == "N"))
-        .filter(|channel| !channel.name.starts_with("measured_"))
+        .filter(|channel| !channel.name.starts_with("measured_") && !of_an_axle(&channel.name))
         .filter(|channel| channel.values.iter().any(|value| value.is_finite() && *value != 0.0))
         .map(|channel| channel.name.as_str())
         .collect();

@@ -1,6 +1,6 @@
 //! The page of a simulation.
 
-use super::{energy, motion};
+use super::{energy, motion, wheels};
 use headland_report::{Axis, Cell, Figure, Item, Lines, Plot, Report, ReportError, Section, Series, Table};
 use headland_scenario::Scenario;
 use headland_sim::{End, Outcome};
@@ -117,7 +117,8 @@ fn detail(id: &str, outcome: &Outcome, alone: bool) -> Result<Section, ReportErr
         .words("Drag across a plot over time to zoom all of them; double-click to see everything again.")
         .with(headland_report::build::over_time("speed_m_s", &[("simulated", trace)], Vec::new())?)
         .with(motion::forces(trace)?);
-    for plot in motion::powers(trace).into_iter().chain(motion::along(trace)).chain(motion::map(trace)) {
+    let plots = wheels::plots(trace).into_iter().chain(motion::powers(trace));
+    for plot in plots.chain(motion::along(trace)).chain(motion::map(trace)) {
         section = section.with(plot);
     }
     Ok(section.with(energy::flow(&outcome.ledger)))

@@ -1,0 +1,95 @@
+//! The soil of a scenario, and the soils that it is made of.
+
+use crate::document::Document;
+use crate::error::ScenarioError;
+use crate::plugins::{Remark, build, build_all};
+use crate::tree::Node;
+use headland_plugin::{Registry, Soil};
+use std::path::Path;
+
+/// Builds the soil at `node`, of those of `ground.soils` where it is made of them.
+pub fn soil(
+    document: &Document,
+    node: &Node,
+    registry: &Registry,
+    folder: &Path,
+    remarks: &mut Vec<Remark>,
+) -> Result<Box<dyn Soil>, ScenarioError> {
+    let more = "headland plugins soil";
+    let (name, mut soil) = build(document, node, &registry.soils, more, folder, remarks)?;
+    let parts = build_all(document, "ground.soils", &registry.soils, more, folder, remarks)?;
+    if parts.is_empty() {
+        if soil.needs_soils() {
+            return Err(ScenarioError::MissingField {
+                field: "soils".to_owned(),
+                of: format!("`ground` with `{name}`"),
+                at: document.location(node.span.start),
+            });
+        }
+        return Ok(soil);
+    }
+    let parts = parts.into_iter().map(|part| (part.name, part.plugin)).collect();
+    soil.adopt(parts).map_err(|refusal| {
+        let below = format!("ground.soil.{}", refusal.parameter);
+        let found = document.find(&below).or_else(|| document.find("ground.soils"));
+        ScenarioError::Value {
+            name: refusal.parameter,
+            found: refusal.found,
+            expected: refusal.expected,
+            at: document.location(found.map_or(node.span.start, |node| node.span.start)),
+        }
+    })?;
+    Ok(soil)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Scenario;
+    use std::path::Path;
+
+    const GOOD: &str = r#"(
+        about: "a road through a field",
+        vehicle: (mass_kg: 9000, rotating_mass_kg: 0, drag_area_m2: 5, driveline: Neutral),
+        ground: (
+            terrain: Flat(heading_rad: "90 deg"),
+            soil: Zones(otherwise: "field", areas: [
+                (soil: "road", corners: [(east_m: 20, north_m: -5), (east_m: "30 m", north_m: -5), (east_m: 25, north_m: 5)]),
+            ]),
+            soils: {"field": Constant(coefficient: 0.08), "road": Constant(coefficient: 0.02)},
+        ),
+        air: (density_kg_m3: 1.2),
+        simulation: (fidelity: Longitudinal, step_s: 0.05),
+    )"#;
+
+    fn told(from: &str, to: &str) -> String {
+        assert!(GOOD.contains(from));
+        let text = GOOD.replacen(from, to, 1);
+        Scenario::of_text("test.ron", &text, Path::new(""), &headland_stock::registry()).unwrap_err().told()
+    }
+
+    #[test]
+    fn zones_take_the_soils_beside_them() {
+        let scenario =
+            Scenario::of_text("test.ron", GOOD, Path::new(""), &headland_stock::registry()).unwrap();
+        let soil = scenario.model(&headland_stock::registry()).unwrap().soil.unwrap();
+        assert!(!soil.needs_axles() && soil.needs_soils());
+    }
+
+    #[test]
+    fn soils_that_do_not_fit_the_zones_are_refused_where_they_stand() {
+        let unknown = told("(soil: \"road\"", "(soil: \"rood\"");
+        assert!(
+            unknown.contains("`areas.0.soil` is \"rood\"") && unknown.contains("field, road"),
+            "{unknown}"
+        );
+        let none = told(
+            "            soils: {\"field\": Constant(coefficient: 0.08), \"road\": Constant(coefficient: 0.02)},\n",
+            "",
+        );
+        assert!(none.contains("`soils`") && none.contains("`Zones`"), "{none}");
+        let start = GOOD.find("Zones(").unwrap();
+        let end = GOOD.find("            soils:").unwrap();
+        let plain = told(&GOOD[start..end], "Constant(coefficient: 0.05),\n");
+        assert!(plain.contains("the same everywhere"), "{plain}");
+    }
+}

@@ -1,0 +1,244 @@
+//! Ground that is not the same everywhere: soils in areas of the map.
+//!
+//! The soil at (east, north) is that of the first area which it lies in, else `otherwise`. A point lies in an area where a
+//! line from it to the east crosses the border an odd number of times; borders belong to one side.
+//!
+//! Source: the even-odd rule; Shimrat, "Algorithm 112: position of point relative to polygon", Communications of the ACM 5
+//! (1962), 434.
+//!
+//! The soils are those of `ground.soils`, by name. A vehicle is on one soil as a whole: that below its centre of gravity.
+//! Where it crosses a border its resistance changes at once.
+
+use headland_plugin::{Card, Contact, Footing, Place, Plugin, Refusal, Soil, WheelContact, parameter};
+use serde::Deserialize;
+use std::path::Path;
+
+/// Soils in areas of the map.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Zones {
+    otherwise: String,
+    areas: Vec<Area>,
+    #[serde(skip)]
+    soils: Vec<(String, Box<dyn Soil>)>,
+    /// Which of the soils lies in each area, and which in none.
+    #[serde(skip)]
+    in_area: Vec<usize>,
+    #[serde(skip)]
+    elsewhere: usize,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Area {
+    soil: String,
+    corners: Vec<Corner>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Corner {
+    east_m: f64,
+    north_m: f64,
+}
+
+impl Plugin for Zones {
+    const CARD: Card = Card {
+        name: "Zones",
+        about: "soils in areas of the map, named in `ground.soils`",
+        equation: "soil(east, north) = soil of the first area around the place, else `otherwise`",
+        source: "even-odd rule; Shimrat, Algorithm 112, Communications of the ACM 5 (1962), 434",
+        validity: "areas that are large beside the vehicle; terrains that know east and north",
+        parameters: &[
+            parameter("otherwise", "(name of a soil)", "what lies outside of all areas"),
+            parameter(
+                "areas",
+                "[(soil, corners: [(east_m, north_m)])]",
+                "three corners or more each; the first area that holds a place counts",
+            ),
+        ],
+    };
+
+    fn settle(&mut self, _: &Path) -> Result<(), Refusal> {
+        for (index, area) in self.areas.iter().enumerate() {
+            let refuse = |found: String, expected: &str| Refusal {
+                parameter: format!("areas.{index}.corners"),
+                found,
+                expected: expected.to_owned(),
+            };
+            if area.corners.len() < 3 {
+                return Err(refuse(format!("{} corners", area.corners.len()), "three or more"));
+            }
+            if let Some(odd) = area.corners.iter().find(|c| !c.east_m.is_finite() || !c.north_m.is_finite()) {
+                return Err(refuse(format!("({}, {})", odd.east_m, odd.north_m), "finite numbers"));
+            }
+            if area.size_m2() == 0.0 {
+                return Err(refuse("corners in one line".to_owned(), "an area"));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Area {
+    /// The shoelace formula.
+    fn size_m2(&self) -> f64 {
+        let next = self.corners.iter().cycle().skip(1);
+        let twice: f64 =
+            self.corners.iter().zip(next).map(|(a, b)| a.east_m * b.north_m - b.east_m * a.north_m).sum();
+        0.5 * twice.abs()
+    }
+
+    fn holds(&self, east_m: f64, north_m: f64) -> bool {
+        let next = self.corners.iter().cycle().skip(1);
+        let crossings = self.corners.iter().zip(next).filter(|(a, b)| {
+            let spans = (a.north_m > north_m) != (b.north_m > north_m);
+            spans && {
+                let share = (north_m - a.north_m) / (b.north_m - a.north_m);
+                east_m < a.east_m + share * (b.east_m - a.east_m)
+            }
+        });
+        crossings.count() % 2 == 1
+    }
+}
+
+impl Zones {
+    fn soil(&self, place: &Place) -> Option<&dyn Soil> {
+        let area = self.areas.iter().position(|area| area.holds(place.east_m, place.north_m));
+        let index = area.map_or(self.elsewhere, |area| self.in_area[area]);
+        self.soils.get(index).map(|(_, soil)| &**soil)
+    }
+}
+
+impl Soil for Zones {
+    fn resistance_n(&self, contact: &Contact) -> f64 {
+        self.resistance_at_n(contact, &Place::default())
+    }
+
+    fn resistance_at_n(&self, contact: &Contact, place: &Place) -> f64 {
+        self.soil(place).map_or(f64::NAN, |soil| soil.resistance_at_n(contact, place))
+    }
+
+    fn wheel(&self, contact: &WheelContact) -> Option<Footing> {
+        self.soil(&contact.place)?.wheel(contact)
+    }
+
+    fn needs_axles(&self) -> bool {
+        self.soils.iter().any(|(_, soil)| soil.needs_axles())
+    }
+
+    fn needs_soils(&self) -> bool {
+        true
+    }
+
+    fn adopt(&mut self, soils: Vec<(String, Box<dyn Soil>)>) -> Result<(), Refusal> {
+        let known: Vec<&str> = soils.iter().map(|(name, _)| name.as_str()).collect();
+        let index = |parameter: String, name: &str| {
+            known.iter().position(|known| *known == name).ok_or_else(|| Refusal {
+                parameter,
+                found: format!("\"{name}\""),
+                expected: format!("one of `ground.soils`: {}", known.join(", ")),
+            })
+        };
+        self.elsewhere = index("otherwise".to_owned(), &self.otherwise)?;
+        self.in_area = (self.areas.iter().enumerate())
+            .map(|(at, area)| index(format!("areas.{at}.soil"), &area.soil))
+            .collect::<Result<_, _>>()?;
+        let unused = (0..known.len())
+            .find(|at| *at != self.elsewhere && !self.in_area.contains(at))
+            .map(|at| known[at]);
+        if let Some(unused) = unused {
+            return Err(Refusal {
+                parameter: "soils".to_owned(),
+                found: format!("\"{unused}\", which lies nowhere"),
+                expected: "soils that an area or `otherwise` names".to_owned(),
+            });
+        }
+        self.soils = soils;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::ON;
+    use crate::{Brixius, Constant};
+
+    fn soil<S: Soil + serde::de::DeserializeOwned + 'static>(text: &str) -> Box<dyn Soil> {
+        Box::new(ron::from_str::<S>(text).unwrap())
+    }
+
+    fn soils() -> Vec<(String, Box<dyn Soil>)> {
+        vec![
+            ("field".to_owned(), soil::<Constant>("(coefficient: 0.08)")),
+            ("road".to_owned(), soil::<Constant>("(coefficient: 0.02)")),
+        ]
+    }
+
+    /// A road 10 m wide from south-west to north-east, and a triangle on top of its middle.
+    fn map() -> Zones {
+        let mut zones: Zones = ron::from_str(
+            r#"(otherwise: "field", areas: [
+                (soil: "field", corners: [(east_m: 45, north_m: 45), (east_m: 55, north_m: 45), (east_m: 50, north_m: 55)]),
+                (soil: "road", corners: [(east_m: 0, north_m: 0), (east_m: 10, north_m: 0),
+                                         (east_m: 110, north_m: 100), (east_m: 100, north_m: 100)]),
+            ])"#,
+        )
+        .unwrap();
+        zones.settle(Path::new("")).unwrap();
+        zones
+    }
+
+    fn resistance_n(zones: &Zones, east_m: f64, north_m: f64) -> f64 {
+        let place = Place { east_m, north_m, ..Place::default() };
+        zones.resistance_at_n(&Contact { load_n: 1e5, speed_m_s: 1.0, position_m: 0.0 }, &place)
+    }
+
+    #[test]
+    fn a_place_has_the_soil_of_the_first_area_around_it() {
+        let mut zones = map();
+        zones.adopt(soils()).unwrap();
+        let table =
+            [(25.0, 20.0, 2e3), (20.0, 25.0, 8e3), (50.0, 48.0, 8e3), (57.0, 50.0, 2e3), (-5.0, 0.0, 8e3)];
+        for (east, north, expected) in table {
+            assert!((resistance_n(&zones, east, north) - expected).abs() < 1e-9, "{east} {north}");
+        }
+        assert!(zones.areas[0].size_m2() == 50.0 && zones.areas[1].size_m2() == 1000.0);
+    }
+
+    #[test]
+    fn wheels_find_what_lies_where_they_are() {
+        let mut zones = map();
+        let field = r"(cone_index_pa: 900e3, construction: Bias, pass_factor: 1.0)";
+        let mut inner = soils();
+        inner[0].1 = soil::<Brixius>(field);
+        zones.adopt(inner).unwrap();
+        assert!(zones.needs_axles());
+        let at =
+            |east_m: f64| WheelContact { place: Place { east_m, north_m: 20.0, ..Place::default() }, ..ON };
+        assert!(zones.wheel(&at(25.0)).is_none());
+        let (one, other) = (zones.wheel(&at(0.0)).unwrap(), soil::<Brixius>(field).wheel(&at(0.0)).unwrap());
+        assert_eq!(one.gross_traction_n, other.gross_traction_n);
+        assert_eq!(one.motion_resistance_n, other.motion_resistance_n);
+    }
+
+    #[test]
+    fn areas_and_names_that_cannot_be_are_refused() {
+        let mut zones = map();
+        let refused = zones.adopt(soils().split_off(1)).unwrap_err().to_string();
+        assert!(
+            refused.contains("`otherwise` is \"field\"") && refused.ends_with("`ground.soils`: road"),
+            "{refused}"
+        );
+        let mut more = soils();
+        more.push(("bog".to_owned(), soil::<Constant>("(coefficient: 0.4)")));
+        assert!(zones.adopt(more).unwrap_err().to_string().contains("\"bog\", which lies nowhere"));
+        zones.areas[1].corners.truncate(2);
+        assert!(
+            zones.settle(Path::new("")).unwrap_err().to_string().contains("`areas.1.corners` is 2 corners")
+        );
+        zones.areas[1].corners = vec![Corner { east_m: 1.0, north_m: 1.0 }; 4];
+        assert!(zones.settle(Path::new("")).unwrap_err().to_string().contains("in one line"));
+    }
+}

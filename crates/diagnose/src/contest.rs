@@ -75,7 +75,8 @@ impl State<'_> {
             let mut parts = stand.parts.clone();
             parts.push(part);
             let settled = self.settle(&parts, &noises)?;
-            let possible = !self.impossible(&settled.parts, &settled.estimate) && self.functions_possible(&settled);
+            let possible =
+                !self.impossible(&settled.parts, &settled.estimate) && self.functions_possible(&settled);
             possible.then_some(Contest { stand: settled })
         };
         let mut judged: Vec<Contest> = finalists.into_par_iter().filter_map(settled).collect();
@@ -189,7 +190,8 @@ impl State<'_> {
         };
         let longest = profile.longest();
         let possible = lengths.iter().copied().filter(|length| *length < longest);
-        let (gain, spread) = best_of(possible.map(|length| Spread { length, size: usual, jumps: None }).collect())?;
+        let (gain, spread) =
+            best_of(possible.map(|length| Spread { length, size: usual, jumps: None }).collect())?;
         let sizes = SIZES.iter().map(|share| Spread { size: share * usual, ..spread.clone() }).collect();
         let (other_gain, other) = best_of(sizes)?;
         Some(if other_gain > gain { other } else { spread })

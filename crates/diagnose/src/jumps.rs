@@ -66,7 +66,8 @@ pub fn squares(factor: &Factor, values: &DVector<f64>, forgetting: f64) -> Vec<f
     (1..values.len())
         .map(|knot| {
             let mean = values[knot] - forgetting * values[knot - 1];
-            let variance = own[knot] + forgetting * forgetting * own[knot - 1] - 2.0 * forgetting * beside[knot];
+            let variance =
+                own[knot] + forgetting * forgetting * own[knot - 1] - 2.0 * forgetting * beside[knot];
             mean * mean + variance.max(0.0)
         })
         .collect()

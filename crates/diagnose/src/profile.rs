@@ -116,7 +116,8 @@ impl<'a> Profile<'a> {
             .iter()
             .map(|(from, to)| {
                 let range = (to - from).max(1e-9);
-                let wanted = spread.jumps.as_ref().map_or(spread.length / KNOTS_PER_LENGTH, |jumps| jumps.step);
+                let wanted =
+                    spread.jumps.as_ref().map_or(spread.length / KNOTS_PER_LENGTH, |jumps| jumps.step);
                 let step = wanted.max(range / MOST_KNOTS);
                 // Between 2 and some hundreds.
                 #[allow(

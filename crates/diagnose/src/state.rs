@@ -222,7 +222,8 @@ impl<'a> State<'a> {
         let mut noises = start.clone();
         let mut best: Option<Stand> = None;
         // Where a function may jump, its freedom has to be found first.
-        let jumps = parts.iter().any(|part| part.spread.as_ref().is_some_and(|spread| spread.jumps.is_some()));
+        let jumps =
+            parts.iter().any(|part| part.spread.as_ref().is_some_and(|spread| spread.jumps.is_some()));
         let least = if jumps { LEAST_ROUNDS } else { 0 };
         for round in 0..ROUNDS + least {
             let whitened = Whitened::new(chunks, &self.system.residual, &columns, &noises)?;

@@ -113,7 +113,8 @@ fn is_map(law: &Law) -> bool {
 /// How much better than what was found a set with a law has to be.
 fn margin(found: &Found, simpler: bool) -> f64 {
     let listed = found.stand.parts.len();
-    let fewer = if listed == 0 { 0.0 } else { 3usize.saturating_sub(listed).max(usize::from(simpler)) as f64 };
+    let fewer =
+        if listed == 0 { 0.0 } else { 3usize.saturating_sub(listed).max(usize::from(simpler)) as f64 };
     let share = if simpler { SIMPLER } else { BETTER };
     MARGIN + share * fewer * (worth(&found.stand) - worth(&found.first)).max(0.0)
 }

@@ -78,8 +78,11 @@ mod tests {
         let time_s: Vec<f64> = (0..2000).map(|index| 0.1 * f64::from(index)).collect();
         let slow: Vec<f64> = time_s.iter().map(|time| 360.0 - 0.01 * time).collect();
         assert!(fast(&time_s, &slow)[1000].abs() < 1e-9);
-        let pulsed: Vec<f64> =
-            slow.iter().enumerate().map(|(index, value)| value - if index == 1000 { 3.0 } else { 0.0 }).collect();
+        let pulsed: Vec<f64> = slow
+            .iter()
+            .enumerate()
+            .map(|(index, value)| value - if index == 1000 { 3.0 } else { 0.0 })
+            .collect();
         assert!((fast(&time_s, &pulsed)[1000] + 3.0).abs() < 0.01);
     }
 

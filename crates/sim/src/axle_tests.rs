@@ -1,7 +1,8 @@
 //! Vehicles that their wheels carry: loads, slip and traction by hand, against vehicles that roll as a whole, and the ledger.
 
 use crate::{
-    Axle, Axles, Cycle, End, Model, Named, Outcome, Phase, Resistance, Start, Until, Vehicle, simulate,
+    Axle, Axles, Cycle, Drive, End, Model, Named, Outcome, Phase, Replay, Resistance, Start, Until, Vehicle,
+    replay, simulate,
 };
 use headland_plugin::{
     Air, Contact, Delivery, Demand, Driveline, Footing, Load, MAX_LOSSES, Place, Readings, Situation, Soil,
@@ -350,5 +351,36 @@ fn at_rest_wheels_hold_and_roll_back_as_a_whole_vehicle_does() {
         let outcome = drive(&model, 1.0, 0.02, vec![Phase::Coast { until: Until::Elapsed(8.0) }]);
         assert_eq!(last(&outcome, "speed_m_s") < 0.0, rolls, "{slope}");
         assert!(outcome.ledger.relative_residual() < 1e-6);
+    }
+}
+
+/// What the model did, handed back to it as a recording: the force drives it the same way again, and the speed asks the
+/// same force and slip of it.
+#[test]
+fn a_replay_on_wheels_repeats_the_drive() {
+    let model = pulling(tractor(Some(both()), FIELD), 12e3);
+    let phases = vec![Phase::Reach { speed_m_s: 4.0, acceleration_m_s2: 0.4 }, Phase::Hold { for_s: 4.0 }];
+    let original = drive(&model, 1.0, 0.02, phases).trace;
+    let again = |drive: Drive| {
+        let how = Replay {
+            drive,
+            also: Vec::new(),
+            window_s: None,
+            smoothing_s: 0.05,
+            step_s: 0.02,
+            reversed_from_m: None,
+        };
+        replay(&model, &original, &how).unwrap()
+    };
+    let forward = again(Drive::Force);
+    let (speed, expected) = (forward.trace.get("speed_m_s").unwrap(), original.get("speed_m_s").unwrap());
+    let worst = speed.iter().zip(expected).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+    assert!(worst < 0.02 && forward.ledger.relative_residual() < 1e-6, "{worst}");
+    let backward = again(Drive::Speed).trace;
+    let middle = original.time_s().iter().position(|time| *time > 9.0).unwrap();
+    for channel in ["tractive_force_n", "slip", "axle_2_load_n"] {
+        let (found, expected) =
+            (backward.get(channel).unwrap()[middle], original.get(channel).unwrap()[middle]);
+        assert!((found / expected - 1.0).abs() < 1e-6, "{channel}: {found} {expected}");
     }
 }

@@ -14,8 +14,10 @@
 //! A wheel in the rut of an earlier one finds the cone index times a factor, the same for every later pass: ruts get
 //! most of their firmness in the first.
 
-use headland_plugin::{Bound, Card, Contact, Footing, Plugin, Soil, WheelContact, parameter};
+use crate::cone_index::{MOIST, MOIST_ABOUT, Moist, settled_pa};
+use headland_plugin::{Bound, Card, Contact, Footing, Plugin, Refusal, Soil, WheelContact, parameter};
 use serde::Deserialize;
+use std::path::Path;
 
 /// How the carcass of a tyre is laid.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
@@ -30,9 +32,14 @@ pub enum Construction {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Brixius {
-    cone_index_pa: f64,
+    #[serde(default)]
+    cone_index_pa: Option<f64>,
+    #[serde(default)]
+    moist: Option<Moist>,
     construction: Construction,
     pass_factor: f64,
+    #[serde(skip)]
+    strength_pa: f64,
 }
 
 impl Plugin for Brixius {
@@ -47,9 +54,10 @@ impl Plugin for Brixius {
         validity: "b/d 0.1 to 0.7, deflection 10 to 30 % of the section height, W/(b d) 15 to 55 kPa, cohesive-frictional \
                    soils; braked wheels by symmetry; needs a vehicle with axles",
         parameters: &[
-            parameter("cone_index_pa", "Pa", "mean resistance to a cone over the top 150 mm, CI")
+            parameter("cone_index_pa", "Pa", "mean resistance to a cone over the top 150 mm, CI; or `moist`")
                 .must_be(Bound::Positive)
                 .usually(1e5, 4e6),
+            parameter("moist", MOIST, MOIST_ABOUT),
             parameter("construction", "(Bias | Radial)", "of the tyres"),
             parameter(
                 "pass_factor",
@@ -60,6 +68,11 @@ impl Plugin for Brixius {
             .usually(1.0, 2.5),
         ],
     };
+
+    fn settle(&mut self, _: &Path) -> Result<(), Refusal> {
+        self.strength_pa = settled_pa(self.cone_index_pa, self.moist)?;
+        Ok(())
+    }
 }
 
 impl Construction {
@@ -89,7 +102,7 @@ impl Soil for Brixius {
         let (a, c, k) = self.construction.constants();
         let (w, s) = (contact.load_n, contact.slip);
         let firmer = if contact.earlier_passes > 0 { self.pass_factor } else { 1.0 };
-        let inverse = inverse_mobility(firmer * self.cone_index_pa, contact);
+        let inverse = inverse_mobility(firmer * self.strength_pa, contact);
         let grip = 0.88 * -(-0.1 / inverse).exp_m1() * (-(-k * s.abs()).exp_m1()).copysign(s);
         Some(Footing {
             gross_traction_n: w * (grip + c),
@@ -110,7 +123,8 @@ mod tests {
     use headland_plugin::Tyre;
 
     fn soil(cone_index_pa: f64, construction: Construction) -> Brixius {
-        Brixius { cone_index_pa, construction, pass_factor: 1.5 }
+        let (cone_index_pa, strength_pa) = (Some(cone_index_pa), cone_index_pa);
+        Brixius { cone_index_pa, moist: None, construction, pass_factor: 1.5, strength_pa }
     }
 
     fn ratios(soil: &Brixius, contact: &WheelContact) -> (f64, f64) {
@@ -220,6 +234,13 @@ mod tests {
         assert!(
             ron::from_str::<Brixius>("(cone_index_pa: 9e5, construction: Steel, pass_factor: 1)").is_err()
         );
-        assert!(ron::from_str::<Brixius>("(cone_index_pa: 9e5, construction: Radial)").is_err());
+        assert!(ron::from_str::<Brixius>("(construction: Radial)").is_err());
+        let mut nothing: Brixius = ron::from_str("(construction: Radial, pass_factor: 1)").unwrap();
+        assert_eq!(nothing.settle(Path::new("")).unwrap_err().parameter, "cone_index_pa");
+        let wet = "(moist: Some((soil_type: CL, moisture: 0.3)), construction: Radial, pass_factor: 1)";
+        let mut wet: Brixius = ron::from_str(wet).unwrap();
+        wet.settle(Path::new("")).unwrap();
+        // e^(10.998 − 1.848 · 3.4012) = 111.40 psi.
+        assert!((wet.strength_pa / 768.1e3 - 1.0).abs() < 2e-3, "{}", wet.strength_pa);
     }
 }

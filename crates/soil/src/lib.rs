@@ -4,6 +4,7 @@
 mod bekker;
 mod brixius;
 mod bulldozing;
+mod cone_index;
 mod constant;
 mod earth;
 mod linear_speed_law;

@@ -1,7 +1,8 @@
 //! A wheel for tests: the 900/60 R38 of the coast-down study under a quarter of its tractor.
 
 use crate::Earth;
-use headland_plugin::{Place, Tyre, WheelContact};
+use headland_plugin::{Place, Plugin, Tyre, WheelContact};
+use std::path::Path;
 
 /// A quarter of 13 019.3 kg at 9.81 m/s² [N].
 pub const LOAD_N: f64 = 13_019.3 * 9.81 / 4.0;
@@ -44,3 +45,11 @@ pub const DRY_SAND: Earth = Earth {
     shear_displacement_m: 0.01,
     density_kg_m3: 1500.0,
 };
+
+/// A soil as scenarios write it.
+pub fn read<S: Plugin>(text: &str) -> S {
+    let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+    let mut soil: S = options.from_str(text).unwrap();
+    soil.settle(Path::new("")).unwrap();
+    soil
+}

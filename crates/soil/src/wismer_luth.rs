@@ -10,15 +10,22 @@
 //! A braked wheel (s < 0) is not in the source: here its traction is the driven wheel's with the other sign. A wheel in
 //! the rut of an earlier one finds the cone index times a factor, the same for every later pass.
 
-use headland_plugin::{Bound, Card, Contact, Footing, Plugin, Soil, WheelContact, parameter};
+use crate::cone_index::{MOIST, MOIST_ABOUT, Moist, settled_pa};
+use headland_plugin::{Bound, Card, Contact, Footing, Plugin, Refusal, Soil, WheelContact, parameter};
 use serde::Deserialize;
+use std::path::Path;
 
 /// Tyres of one make on soil of one cone index.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WismerLuth {
-    cone_index_pa: f64,
+    #[serde(default)]
+    cone_index_pa: Option<f64>,
+    #[serde(default)]
+    moist: Option<Moist>,
     pass_factor: f64,
+    #[serde(skip)]
+    strength_pa: f64,
 }
 
 impl Plugin for WismerLuth {
@@ -31,9 +38,10 @@ impl Plugin for WismerLuth {
         validity: "b/d about 0.3, deflection 20 % of the section height, cohesive-frictional soils that are not very firm; \
                    braked wheels by symmetry; needs a vehicle with axles",
         parameters: &[
-            parameter("cone_index_pa", "Pa", "mean resistance to a cone over the top 150 mm, CI")
+            parameter("cone_index_pa", "Pa", "mean resistance to a cone over the top 150 mm, CI; or `moist`")
                 .must_be(Bound::Positive)
                 .usually(1e5, 4e6),
+            parameter("moist", MOIST, MOIST_ABOUT),
             parameter(
                 "pass_factor",
                 "1",
@@ -43,6 +51,11 @@ impl Plugin for WismerLuth {
             .usually(1.0, 2.5),
         ],
     };
+
+    fn settle(&mut self, _: &Path) -> Result<(), Refusal> {
+        self.strength_pa = settled_pa(self.cone_index_pa, self.moist)?;
+        Ok(())
+    }
 }
 
 impl Soil for WismerLuth {
@@ -54,7 +67,7 @@ impl Soil for WismerLuth {
         let (b, d) = (contact.tyre.width_m, contact.tyre.diameter_m);
         let (w, s) = (contact.load_n, contact.slip);
         let firmer = if contact.earlier_passes > 0 { self.pass_factor } else { 1.0 };
-        let inverse = w / (firmer * self.cone_index_pa * b * d);
+        let inverse = w / (firmer * self.strength_pa * b * d);
         // Without load there is no traction, whatever the numeric.
         let grip = if w == 0.0 { 0.0 } else { 0.75 * (-(-0.3 * s.abs() / inverse).exp_m1()).copysign(s) };
         Some(Footing {
@@ -73,11 +86,12 @@ impl Soil for WismerLuth {
 mod tests {
     use super::*;
     use crate::Brixius;
-    use crate::testing::{LOAD_N, ON, XERION};
+    use crate::testing::{LOAD_N, ON, XERION, read};
     use headland_plugin::Tyre;
 
     fn soil(cone_index_pa: f64) -> WismerLuth {
-        WismerLuth { cone_index_pa, pass_factor: 1.5 }
+        let (cone_index_pa, strength_pa) = (Some(cone_index_pa), cone_index_pa);
+        WismerLuth { cone_index_pa, moist: None, pass_factor: 1.5, strength_pa }
     }
 
     /// Cone index at which the wheel of the tests has this numeric.
@@ -125,7 +139,7 @@ mod tests {
         for numeric in [30.0, 35.0, 40.0] {
             let cone_index_pa = numeric * 20_000.0 / (tyre.width_m * tyre.diameter_m);
             let text = format!("(cone_index_pa: {cone_index_pa}, construction: Bias, pass_factor: 1.0)");
-            let brixius: Brixius = ron::from_str(&text).unwrap();
+            let brixius: Brixius = read(&text);
             for slip in [0.1, 0.2, 0.3] {
                 let contact = WheelContact { tyre: &tyre, load_n: 20_000.0, slip, ..ON };
                 let (one, other) =

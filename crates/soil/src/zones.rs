@@ -162,11 +162,11 @@ impl Soil for Zones {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::ON;
+    use crate::testing::{ON, read};
     use crate::{Brixius, Constant};
 
-    fn soil<S: Soil + serde::de::DeserializeOwned + 'static>(text: &str) -> Box<dyn Soil> {
-        Box::new(ron::from_str::<S>(text).unwrap())
+    fn soil<S: Soil + Plugin>(text: &str) -> Box<dyn Soil> {
+        Box::new(read::<S>(text))
     }
 
     fn soils() -> Vec<(String, Box<dyn Soil>)> {

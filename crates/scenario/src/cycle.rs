@@ -8,7 +8,7 @@ use crate::schema::{Any, ScenarioFile};
 use crate::tree::{Node, Shape};
 use crate::until::{until, when};
 use headland_plugin::{Bound, Mode};
-use headland_sim::{Cycle, EngineSpeed, Model, Phase, Pi, Setting, Start};
+use headland_sim::{Cycle, EngineSpeed, Guard, Model, Phase, Pi, Setting, Start};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -129,7 +129,7 @@ pub fn cycle(
     } else {
         piece
     };
-    let mut plan = Plan { folder, model, phases: Vec::new() };
+    let mut plan = Plan { folder, model, phases: Vec::new(), guards: 0 };
     plan.add(phases, &Setting::default())?;
     let (driver_gain_per_s, pi) = driver(document)?;
     let mut phases = plan.phases;
@@ -179,6 +179,8 @@ struct Plan<'m> {
     folder: &'m Path,
     model: &'m Model,
     phases: Vec<(Setting, Phase)>,
+    /// Conditions of entry so far.
+    guards: usize,
 }
 
 impl Plan<'_> {
@@ -249,14 +251,16 @@ impl Plan<'_> {
     }
 
     /// What goes on in a phase, within what goes on around it.
-    fn setting(&self, piece: Piece, around: &Setting) -> Result<Setting, ScenarioError> {
+    fn setting(&mut self, piece: Piece, around: &Setting) -> Result<Setting, ScenarioError> {
         let mut setting = around.clone();
         if let Some(name) = piece.field("name") {
             let own: String = name.read("name")?;
             setting.name = Some(around.name.as_ref().map_or(own.clone(), |outer| format!("{outer}, {own}")));
         }
         if let Some(conditions) = piece.field("when") {
-            setting.when.extend(when(conditions, self.model)?);
+            let when = when(conditions, self.model)?;
+            setting.guards.push(Guard { group: self.guards, when });
+            self.guards += 1;
         }
         for (field, mode) in MODES {
             let Some(list) = piece.field(field) else { continue };

@@ -72,7 +72,7 @@ fn nested_phases_flatten_to_a_plan_and_take_on_what_is_said_around_them() {
     assert_eq!(parts(&phases[4]).0.tasks.as_ref().unwrap().len(), 1);
     let (setting, stand) = parts(&phases[5]);
     assert_eq!(setting.tasks.as_ref().unwrap()[0].1, Mode::Fill);
-    assert_eq!(setting.when.len(), 1);
+    assert_eq!(setting.guards.len(), 1);
     let above = Until::StateAbove { state: "tank_payload_kg".to_owned(), value: 500.0 };
     assert_eq!(*stand, Phase::Stand { until: above });
     // No phase says that anything works here, though others do: so nothing does.

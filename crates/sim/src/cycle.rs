@@ -9,6 +9,7 @@ use crate::step::{Machine, Moment};
 use crate::{End, Model, Outcome};
 use headland_plugin::Mode;
 use headland_trace::TraceError;
+use std::collections::BTreeMap;
 
 /// A run of more steps would fill the memory: 10 million take some gigabytes, and are a day at 10 ms.
 const MOST_STEPS: usize = 10_000_000;
@@ -41,6 +42,8 @@ pub(crate) struct Running<'a> {
     pub target_m_s: f64,
     pub setting: Setting,
     driven: Vec<Driven>,
+    /// What was found of each group that has a guard.
+    entered: BTreeMap<usize, bool>,
 }
 
 impl<'a> Running<'a> {
@@ -61,6 +64,7 @@ impl<'a> Running<'a> {
             target_m_s: start.speed_m_s,
             setting: Setting::default(),
             driven: Vec::new(),
+            entered: BTreeMap::new(),
         }
     }
 
@@ -71,7 +75,7 @@ impl<'a> Running<'a> {
             bare => (Setting::default(), bare),
         };
         let (from_s, from_m) = (self.machine.time_s, self.machine.position_m());
-        let result = if Ending::conditions(&setting.when, &self.machine)?.all(&self.machine.moment()) {
+        let result = if self.entered(&setting)? {
             self.set(&setting).and_then(|()| self.drive(phase))
         } else {
             Ok("passed over: what it waits for is not so".to_owned())
@@ -86,6 +90,22 @@ impl<'a> Running<'a> {
             ended_by: result.clone().unwrap_or_else(|reason| format!("stopped: {reason}")),
         });
         result.map(|_| ())
+    }
+
+    /// Whether every guard of a phase holds. That of a group is asked once.
+    fn entered(&mut self, setting: &Setting) -> Result<bool, String> {
+        for guard in &setting.guards {
+            let known = self.entered.get(&guard.group).copied();
+            let holds = match known {
+                Some(holds) => holds,
+                None => Ending::conditions(&guard.when, &self.machine)?.all(&self.machine.moment()),
+            };
+            self.entered.insert(guard.group, holds);
+            if !holds {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// Tells the tasks what to do.

@@ -1,7 +1,7 @@
 //! Phases: what ends them, what goes on in them, and how a cycle that cannot be driven is told.
 
 use crate::physics_tests::{drive, last, tractor};
-use crate::{End, EngineSpeed, Model, Named, Outcome, Phase, Pi, Setting, Until};
+use crate::{End, EngineSpeed, Guard, Model, Named, Outcome, Phase, Pi, Setting, Until};
 use headland_plugin::{Load, Mode, Place, Situation, State, Task, Terrain};
 
 /// A tank that takes and gives 80 kg/s, pulls 500 N where it works, and holds a tonne.
@@ -123,6 +123,10 @@ fn an_end_that_lies_behind_stops_the_run_with_time_place_and_reason_and_the_trac
     assert_eq!(reason(&late).2, "the phase is to end at 6 s, which is 2.000 s ago");
     let lost = drive(&model, 3.0, 0.1, vec![drive_until(Until::Mark("gate".to_owned()))]);
     assert!(reason(&lost).2.contains("no mark `gate`"));
+    // Where something else can end the phase, a mark that does not come again is none.
+    let last_post = Until::Any(vec![Until::Mark("gate".to_owned()), Until::PathEnd]);
+    let outcome = drive(&model, 3.0, 0.1, vec![drive_until(last_post)]);
+    assert_eq!(outcome.phases[0].ended_by, "at the end of the path");
 }
 
 #[test]
@@ -179,14 +183,35 @@ fn tasks_do_in_a_phase_what_it_tells_them_and_a_task_in_trouble_ends_the_run() {
 #[test]
 fn a_phase_is_passed_over_unless_what_it_waits_for_is_so() {
     let when = |value| Setting {
-        when: vec![Until::StateAbove { state: "tank_payload_kg".to_owned(), value }],
+        guards: vec![Guard {
+            group: 0,
+            when: vec![Until::StateAbove { state: "tank_payload_kg".to_owned(), value }],
+        }],
         tasks: Some(Vec::new()),
         ..Setting::default()
     };
     let phase = |value| Phase::With { setting: when(value), phase: Box::new(Phase::Hold { for_s: 4.0 }) };
-    let outcome = drive(&with_tank(), 2.0, 0.1, vec![phase(99.0), phase(101.0)]);
-    assert_eq!((outcome.phases[0].to_s, outcome.phases[1].to_s), (4.0, 4.0));
-    assert!(outcome.phases[1].ended_by.starts_with("passed over"));
+    let one_of = |value| drive(&with_tank(), 2.0, 0.1, vec![phase(value)]).phases.remove(0);
+    assert_eq!((one_of(99.0).to_s, one_of(101.0).to_s), (4.0, 0.0));
+    assert!(one_of(101.0).ended_by.starts_with("passed over"));
+}
+
+/// What lets a group begin may be gone by its second phase.
+#[test]
+fn a_group_is_driven_whole_or_passed_over_whole() {
+    let empty = |value| {
+        let when = vec![Until::StateAbove { state: "tank_payload_kg".to_owned(), value }];
+        let setting = Setting {
+            guards: vec![Guard { group: 7, when }],
+            tasks: Some(vec![("tank".to_owned(), Mode::Empty)]),
+            ..Setting::default()
+        };
+        Phase::With { setting, phase: Box::new(Phase::Stand { until: Until::Elapsed(0.5) }) }
+    };
+    let outcome = drive(&with_tank(), 0.0, 0.1, vec![empty(90.0), empty(90.0)]);
+    assert!((last(&outcome, "tank_payload_kg") - 20.0).abs() < 1e-9);
+    let outcome = drive(&with_tank(), 0.0, 0.1, vec![empty(110.0), empty(90.0)]);
+    assert_eq!(last(&outcome, "tank_payload_kg"), 100.0);
 }
 
 /// Filling while it rolls out, and emptying while it slows down further: the kinetic energy of what comes and goes is an

@@ -83,7 +83,15 @@ impl Ending {
         let ahead = |end_m: f64, here_m: f64| if strict { ahead(end_m, here_m) } else { Ok(end_m) };
         let (now_s, here_m) = (machine.time_s, machine.position_m());
         let (measure, words) = match until {
-            Until::Any(ends) => return ends.iter().try_for_each(|end| self.add(end, machine, strict)),
+            Until::Any(ends) => {
+                let gone =
+                    |end: &&Until| !matches!(end, Until::Mark(name) if next_mark_m(machine, name).is_none());
+                let mut come = ends.iter().filter(gone).peekable();
+                if come.peek().is_none() {
+                    return ends.first().map_or(Ok(()), |end| self.add(end, machine, strict));
+                }
+                return come.try_for_each(|end| self.add(end, machine, strict));
+            }
             Until::Stopped => (Measure::Speed { than: 0.0, way: 1.0 }, "the vehicle rests".to_owned()),
             Until::SpeedBelow(than) => {
                 (Measure::Speed { than: *than, way: 1.0 }, format!("its speed has fallen to {than:.2} m/s"))
@@ -104,8 +112,7 @@ impl Ending {
             Until::Travelled(far_m) => (Measure::Place(here_m + far_m), format!("after {far_m} m")),
             Until::Position(end_m) => (Measure::Place(ahead(*end_m, here_m)?), format!("at {end_m} m")),
             Until::Mark(name) => {
-                let terrain = &machine.model.terrain;
-                let Some(end_m) = terrain.next_mark_m(name, here_m + PASSED_M) else {
+                let Some(end_m) = next_mark_m(machine, name) else {
                     return Err(format!("no mark `{name}` stands on the path beyond {here_m:.1} m"));
                 };
                 (Measure::Place(end_m), format!("at the mark `{name}`"))
@@ -178,6 +185,11 @@ impl Ending {
         });
         come.map_or_else(String::new, |(_, words)| words.clone())
     }
+}
+
+/// Where the next mark stands ahead; one that was just reached is none.
+fn next_mark_m(machine: &Machine, name: &str) -> Option<f64> {
+    machine.model.terrain.next_mark_m(name, machine.position_m() + PASSED_M)
 }
 
 /// A position that lies ahead; a rounding behind counts as here.

@@ -33,7 +33,7 @@ pub use axles::{Axle, Axles};
 pub use cycle::simulate;
 pub use ledger::{Entry, Ledger};
 pub use model::{Model, Named, Resistance, Vehicle};
-pub use plan::{Cycle, Driven, EngineSpeed, Phase, Pi, Setting, Start, Until};
+pub use plan::{Cycle, Driven, EngineSpeed, Guard, Phase, Pi, Setting, Start, Until};
 pub use replay::{Drive, Inputs, Replay, ReplayError, replay};
 pub use slope::{LocalFit, local_fit, travelled};
 

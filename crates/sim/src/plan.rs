@@ -117,14 +117,23 @@ pub enum Phase {
 pub struct Setting {
     /// What the phase is called.
     pub name: Option<String>,
-    /// The phase is passed over unless all of these are true as it would begin.
-    pub when: Vec<Until>,
+    /// The phase is passed over unless all of these hold.
+    pub guards: Vec<Guard>,
     /// What each task is told to do, by name; those that are not named rest. `None`: all work.
     pub tasks: Option<Vec<(String, Mode)>>,
     /// Speed at which the driver keeps the engine.
     pub engine_speed: EngineSpeed,
     /// A driver who knows no resistances; `None`: one who does.
     pub driver: Option<Pi>,
+}
+
+/// A condition of entry, of a phase or of a group of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Guard {
+    /// Phases of one group have the same number; what holds as the first of them would begin holds for all.
+    pub group: usize,
+    /// All of these have to be true.
+    pub when: Vec<Until>,
 }
 
 /// Speed at which the driver keeps the engine.

@@ -1,14 +1,24 @@
 //! Height, slope and heading along a path: one file each.
 
+mod ab_lines;
 mod constant_grade;
 mod curve;
 mod file;
 mod flat;
+mod gpx;
+mod marks;
+mod plane;
 mod profile;
+mod route;
+mod spiral;
+mod spline;
 
+pub use ab_lines::AbLines;
 pub use constant_grade::ConstantGrade;
 pub use flat::Flat;
 pub use profile::Profile;
+pub use route::Route;
+pub use spiral::Spiral;
 
 use headland_plugin::Registry;
 
@@ -17,4 +27,7 @@ pub fn register(registry: &mut Registry) {
     registry.terrain::<Flat>();
     registry.terrain::<ConstantGrade>();
     registry.terrain::<Profile>();
+    registry.terrain::<AbLines>();
+    registry.terrain::<Spiral>();
+    registry.terrain::<Route>();
 }

@@ -69,7 +69,7 @@ fn every_piece_is_included_by_a_scenario() {
     files.extend(files_below(&root().join("scenarios/comparisons")));
     let texts: Vec<String> =
         files.iter().map(|path| std::fs::read_to_string(path).unwrap().replace("\"../", "\"")).collect();
-    for folder in ["vehicles", "grounds"] {
+    for folder in ["vehicles", "grounds", "cycles"] {
         for path in files_below(&root().join("scenarios").join(folder)) {
             let include = format!("\"{folder}/{}\"", path.file_name().unwrap().to_string_lossy());
             assert!(texts.iter().any(|text| text.contains(&include)), "nothing includes {include}");

@@ -269,3 +269,20 @@ fn an_engine_speed_over_time_and_a_speed_by_place_are_followed() {
     // Half of the way from 20 m to 60 m.
     assert!((last(&outcome, "speed_m_s") - 3.0).abs() < 1e-3, "{}", last(&outcome, "speed_m_s"));
 }
+
+/// A ramp once went on beyond its target where the rounding of time left its corner on the near side.
+#[test]
+fn a_ramp_ends_at_its_target_at_whatever_time_it_begins() {
+    let mut model = with_tank();
+    model.tasks.clear();
+    let mut phases = vec![Phase::Reach { speed_m_s: 1.5, acceleration_m_s2: 1.0 }];
+    for turn in 0_u8..60 {
+        let speed_m_s = if turn % 2 == 0 { 0.7 } else { 1.6 };
+        let until = Until::Elapsed(1.1 + 0.013 * f64::from(turn));
+        phases.push(Phase::Drive { speed_m_s, acceleration_m_s2: 1.3, tolerance_m_s: None, until });
+    }
+    let outcome = drive(&model, 0.0, 0.05, phases);
+    assert_eq!(outcome.end, End::Finished);
+    let slowest = outcome.trace.get("speed_m_s").unwrap()[40..].iter().fold(f64::INFINITY, |a, b| a.min(*b));
+    assert!(slowest > 0.69, "{slowest}");
+}

@@ -166,13 +166,11 @@ impl Running<'_> {
         let driver = self.setting.driver.map_or(Driver::Knowing(self.cycle.driver_gain_per_s), Driver::Pi);
         let memory = self.machine.layout.driver;
         let given = self.given();
-        for corner_s in reference.corners_s().into_iter().chain([f64::INFINITY]) {
-            let piece_s = self.machine.time_s;
-            if corner_s <= piece_s {
-                continue;
-            }
-            let control = |at: &Moment| driver.follow(reference, piece_s, memory, at, given(at.time_s));
-            self.target_m_s = reference.speed_m_s(if corner_s.is_finite() { corner_s } else { piece_s });
+        // A piece ends where the next one begins, to the bit: rounding must not leave the vehicle on the last one.
+        for (piece, corner_s) in reference.corners_s().into_iter().chain([f64::INFINITY]).enumerate() {
+            let control = |at: &Moment| driver.follow(reference, piece, memory, at, given(at.time_s));
+            let end_s = if corner_s.is_finite() { corner_s } else { self.machine.time_s };
+            self.target_m_s = reference.speed_m_s(end_s);
             if self.until(&control, ending, corner_s, hopeless)? {
                 break;
             }

@@ -36,28 +36,30 @@ impl Reference {
         self.points.iter().skip(1).map(|(after_s, _)| self.begin_s + after_s).collect()
     }
 
-    /// Speed [m/s] and its slope [m/s²] on the piece that holds the instant `within_s`, at `time_s`.
-    fn on(&self, within_s: f64, time_s: f64) -> (f64, f64) {
-        let (within, t) = (within_s - self.begin_s, time_s - self.begin_s);
-        let after = self.points.partition_point(|(at, _)| *at <= within);
-        match (after.checked_sub(1).map(|before| self.points[before]), self.points.get(after).copied()) {
-            (Some((t0, v0)), Some((t1, v1))) => {
+    /// Speed [m/s] and its slope [m/s²] on a piece, counted by its first point; behind the last point it stays.
+    fn on(&self, piece: usize, time_s: f64) -> (f64, f64) {
+        let (t0, v0) = self.points[piece];
+        match self.points.get(piece + 1) {
+            Some((t1, v1)) => {
                 let rate = (v1 - v0) / (t1 - t0);
-                (v0 + rate * (t - t0), rate)
+                (v0 + rate * (time_s - self.begin_s - t0), rate)
             }
-            (Some((_, v)), None) | (None, Some((_, v))) => (v, 0.0),
-            (None, None) => (0.0, 0.0),
+            None => (v0, 0.0),
         }
     }
 
     /// Speed [m/s] and its slope at an instant; the slope behind a corner.
     pub fn at(&self, time_s: f64) -> (f64, f64) {
-        self.on(time_s, time_s)
+        let since_s = time_s - self.begin_s;
+        match self.points.partition_point(|(at_s, _)| *at_s <= since_s).checked_sub(1) {
+            Some(piece) => self.on(piece, time_s),
+            None => (self.points.first().map_or(0.0, |(_, first)| *first), 0.0),
+        }
     }
 
     /// Speed at an instant [m/s].
     pub fn speed_m_s(&self, time_s: f64) -> f64 {
-        self.on(time_s, time_s).0
+        self.at(time_s).0
     }
 }
 
@@ -71,19 +73,18 @@ pub(crate) enum Driver {
 }
 
 impl Driver {
-    /// What the driver does on the piece of the reference that holds `piece_s`; `memory` is the place of the driver's
-    /// state among all states.
+    /// What the driver does on a piece of the reference; `memory` is the place of the driver's state among all states.
     #[allow(clippy::inline_always, reason = "see the balance")]
     #[inline(always)]
     pub fn follow(
         &self,
         reference: &Reference,
-        piece_s: f64,
+        piece: usize,
         memory: Option<usize>,
         at: &Moment,
         given: Given,
     ) -> (Command, Given) {
-        let (wanted, rate) = reference.on(piece_s, at.time_s);
+        let (wanted, rate) = reference.on(piece, at.time_s);
         match self {
             Self::Knowing(gain) => (Command::Accelerate(rate + gain * (wanted - at.speed_m_s)), given),
             Self::Pi(pi) => {

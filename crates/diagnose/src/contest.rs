@@ -17,6 +17,16 @@ pub struct Contest {
     pub stand: Stand,
 }
 
+impl Contest {
+    /// Whether the new cause is a function that may jump.
+    fn jumps(&self) -> bool {
+        let spread = self.stand.parts.last().and_then(|part| part.spread.as_ref());
+        spread.is_some_and(|spread| spread.jumps.is_some())
+    }
+}
+
+/// The cause that is switched.
+const SWITCHED: &str = "auxiliary_power";
 /// Trials whose noise is estimated anew.
 const FINALISTS: usize = 8;
 /// Trials within this of the best one are judged, though they be many.
@@ -81,6 +91,12 @@ impl State<'_> {
         };
         let mut judged: Vec<Contest> = finalists.into_par_iter().filter_map(settled).collect();
         judged.sort_by(|one, other| rank(&other.stand, self).total_cmp(&rank(&one.stand, self)));
+        // Jumps are for what no steady function shows: beside one they would only follow the noise closer.
+        let best = judged.iter().find(|one| !one.jumps());
+        let steady = best.and_then(|one| Some(self.cause(&one.stand.parts.last()?.trial)));
+        if steady.is_some_and(|cause| cause.is_function() && cause.id == SWITCHED) {
+            judged.retain(|one| !one.jumps());
+        }
         judged
     }
 
@@ -114,7 +130,7 @@ impl State<'_> {
         let switched = self.pool.trials.iter().filter(|trial| {
             let cause = self.cause(trial);
             cause.is_function()
-                && cause.id == "auxiliary_power"
+                && cause.id == SWITCHED
                 && !taken.contains(&cause.id)
                 && self.apart(trial, &stand.parts)
         });

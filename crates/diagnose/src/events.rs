@@ -39,6 +39,11 @@ const WEAKEST: f64 = 0.02;
 const LENGTHS: [usize; 10] = [2, 3, 5, 8, 13, 21, 34, 55, 89, 144];
 /// At most so many spells in a chunk.
 const MOST: usize = 6;
+/// Recordings begin and end while something is done: what lasts less than this at an edge is told of no vehicle [s].
+const EDGE_S: f64 = 0.5;
+const SHORT_S: f64 = 3.0;
+/// What covers more than this share of a run is no spell in it.
+const MOST_OF_A_RUN: f64 = 0.5;
 /// A braked vehicle slows down at least like this [m/s²].
 pub const BRAKED_M_S2: f64 = -0.25;
 
@@ -72,7 +77,17 @@ pub fn events(case: &Case, system: &System, found: &Found) -> Vec<Event> {
         said.effective_mass_kg.iter().find(|mass| mass.is_finite()).copied().unwrap_or(0.0)
             * STANDARD_GRAVITY_M_S2
     };
-    joined(all).into_iter().filter(|event| event.force_n > WEAKEST * weight_n(event)).collect()
+    let strong: Vec<Event> =
+        joined(all).into_iter().filter(|event| event.force_n > WEAKEST * weight_n(event)).collect();
+    let spell = |event: &&Event| {
+        let time_s = case.runs[event.run].measured.trace.time_s();
+        let (first_s, last_s) = (time_s[0], time_s[time_s.len() - 1]);
+        let at_an_edge = event.from_s < first_s + EDGE_S || event.to_s > last_s - EDGE_S;
+        let own = strong.iter().filter(|other| other.run == event.run);
+        let covered_s: f64 = own.map(|other| other.to_s - other.from_s).sum();
+        !(at_an_edge && event.to_s - event.from_s < SHORT_S) && covered_s < MOST_OF_A_RUN * (last_s - first_s)
+    };
+    strong.iter().filter(spell).cloned().collect()
 }
 
 /// A stretch of rows with a force of one.

@@ -144,6 +144,9 @@ pub fn fault(fault: &crate::faults::Fault) -> String {
                 quantity(fault.size, &fault.unit)
             )
         }
+        "dropout" if fault.channel != "time_s" => {
+            format!("{channel} is missing in {:.1} % of its samples.", 100.0 * fault.size)
+        }
         _ => format!("{:.1} % of the recorded time holds no samples.", 100.0 * fault.size),
     }
 }

@@ -314,6 +314,29 @@ fn slip_and_load_transfer_keep_the_fourth_order() {
     assert!(order > 3.6 && order < 4.6, "observed order {order}");
 }
 
+/// 60 % of the load resist 6 %, 40 % on soft ground behind a border 10 %.
+#[test]
+fn each_axle_is_on_its_own_ground() {
+    #[derive(Debug)]
+    struct Border;
+    impl Soil for Border {
+        fn resistance_n(&self, _: &Contact) -> f64 {
+            f64::NAN
+        }
+        fn wheel(&self, contact: &WheelContact) -> Option<Footing> {
+            let coefficient = if contact.place.north_m > 0.0 { 0.06 } else { 0.1 };
+            Field { coefficient, ..FIELD }.wheel(contact)
+        }
+    }
+    let mut model = tractor(Some(both()), FIELD);
+    model.soil = Some(Box::new(Border));
+    let outcome = drive(&model, 0.1, 0.05, vec![Phase::Hold { for_s: 0.1 }]);
+    let share = |axle: u32| {
+        last(&outcome, &format!("axle_{axle}_resistance_n")) / last(&outcome, &format!("axle_{axle}_load_n"))
+    };
+    assert!((share(1) - 0.06).abs() < 1e-12 && (share(2) - 0.1).abs() < 1e-12, "{} {}", share(1), share(2));
+}
+
 #[test]
 fn a_demand_beyond_the_ground_stops_with_time_place_and_reason() {
     // 0.7 (1 − e^(−8 · 0.6)) of 98.1 kN are 68.1 kN; 63 kN and the resistance are more.

@@ -93,7 +93,7 @@ impl Axles {
         share * weight_n + per_moment * moment_n_m
     }
 
-    /// Wheels ahead of those of an axle in the same rut.
+    /// Wheels ahead of those of an axle in the same rut, driving forward; a vehicle that rolls back keeps the count.
     pub(crate) fn earlier(&self, index: usize) -> u32 {
         self.earlier[index]
     }

@@ -87,6 +87,7 @@ impl Model {
             states: &mut scratch.axles,
             firm: false,
         };
+        stance.place();
         let (mut moment, mut before, mut near) = (0.0, None::<(f64, f64)>, None);
         let mut iteration = 0;
         loop {

@@ -11,11 +11,13 @@
 
 use crate::axles::Axles;
 use crate::root::rising;
-use headland_plugin::{Contact, Footing, Situation, Soil, WheelContact};
+use headland_plugin::{Contact, Footing, Place, Situation, Soil, WheelContact};
 
 /// What one axle does.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct AxleState {
+    /// The ground below it, straight ahead of the vehicle's place or behind it.
+    pub place: Place,
     pub load_n: f64,
     pub slip: f64,
     pub traction_n: f64,
@@ -100,9 +102,24 @@ impl Stance<'_> {
             slip,
             speed_m_s: self.rolling_m_s,
             earlier_passes: self.axles.earlier(index),
-            position_m: self.situation.position_m,
-            place: self.situation.place,
+            position_m: self.position_m(axle.position_m),
+            place: self.states[index].place,
         })
+    }
+
+    /// Where along the path an axle is that stands so far ahead [m].
+    fn position_m(&self, ahead_m: f64) -> f64 {
+        self.situation.position_m + if self.situation.reversed { -ahead_m } else { ahead_m }
+    }
+
+    /// Finds the ground below each axle.
+    pub fn place(&mut self) {
+        let (east, north) = self.situation.place.heading_rad.sin_cos();
+        for (axle, state) in self.axles.list().iter().zip(self.states.iter_mut()) {
+            state.place = self.situation.place;
+            state.place.east_m += axle.position_m * east;
+            state.place.north_m += axle.position_m * north;
+        }
     }
 
     /// Shares the load out, and lets the wheels without drive find the slip at which they turn freely.
@@ -165,12 +182,12 @@ impl Stance<'_> {
         for index in 0..self.states.len() {
             let axle = self.axles.list()[index];
             let load_n = self.states[index].load_n.max(0.0);
-            let contact =
-                Contact { load_n, speed_m_s: self.rolling_m_s, position_m: self.situation.position_m };
+            let position_m = self.position_m(axle.position_m);
+            let contact = Contact { load_n, speed_m_s: self.rolling_m_s, position_m };
             let footing = self.footing(index, 0.0);
             let wheels = f64::from(axle.wheels);
             let resistance_n = footing.map_or_else(
-                || self.soil.resistance_at_n(&contact, &self.situation.place),
+                || self.soil.resistance_at_n(&contact, &self.states[index].place),
                 |footing| wheels * footing.motion_resistance_n,
             );
             let traction_n = if axle.lead.is_some() { force_n / driven } else { 0.0 };

@@ -6,8 +6,8 @@
 //! Source: the even-odd rule; Shimrat, "Algorithm 112: position of point relative to polygon", Communications of the ACM 5
 //! (1962), 434.
 //!
-//! The soils are those of `ground.soils`, by name. A vehicle is on one soil as a whole: that below its centre of gravity.
-//! Where it crosses a border its resistance changes at once.
+//! The soils are those of `ground.soils`, by name. The wheels of an axle are on the soil below its middle, a vehicle without
+//! axles on that below its centre of gravity. Where they cross a border the resistance changes at once.
 
 use headland_plugin::{Card, Contact, Footing, Place, Plugin, Refusal, Soil, WheelContact, parameter};
 use serde::Deserialize;

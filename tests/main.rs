@@ -6,8 +6,12 @@
 mod commands;
 #[path = "whole/files.rs"]
 mod files;
+#[path = "whole/hybrids.rs"]
+mod hybrids;
 #[path = "whole/layers.rs"]
 mod layers;
+#[path = "whole/managements.rs"]
+mod managements;
 #[path = "whole/models.rs"]
 mod models;
 #[path = "whole/scenarios.rs"]

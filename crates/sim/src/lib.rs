@@ -23,6 +23,7 @@ mod plan;
 mod recorder;
 mod reference;
 mod replay;
+mod rolling;
 mod root;
 mod slope;
 mod step;

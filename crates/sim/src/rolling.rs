@@ -1,0 +1,98 @@
+//! What ground and driveline make of a command, for a vehicle that rolls as a whole.
+
+#![allow(clippy::inline_always, reason = "a part of the balance")]
+
+use crate::balance::{Asked, Command, MOST_SLIP, Rolled, Sums};
+use crate::{Model, Resistance};
+use headland_plugin::{Contact, Situation};
+
+impl Model {
+    /// The forces of a vehicle that rolls as a whole.
+    #[inline(always)]
+    pub(crate) fn rolling(&self, asked: &Asked, sums: &Sums, rates: &mut [f64]) -> Rolled {
+        let Asked { mut situation, command, given, layout, states, direction, .. } = *asked;
+        let Asked { effective_mass_kg, free_n, mut demand, .. } = *asked;
+        let speed_m_s = situation.speed_m_s;
+        let ground_n = self.ground_n(&situation, (speed_m_s * direction).max(0.0));
+        // An effect may say that the ground resists less, and never that it drives.
+        let ground_n = ground_n.max(-(sums.resistance_n + sums.drawbar_n));
+        let held_n = ground_n + sums.resistance_n + sums.drawbar_n;
+
+        let range = layout.driveline.clone();
+        let lost_n = |force_n: f64| sums.loss_share * force_n.abs();
+        let wanted_n = match command {
+            Command::Coast => 0.0,
+            Command::Recorded(force_n) => force_n,
+            Command::Accelerate(wanted) => {
+                let way = asked.way();
+                let resting = speed_m_s == 0.0 && wanted == 0.0;
+                let ground_n = if resting { 0.0 } else { effective_mass_kg * wanted - free_n + way * held_n };
+                // F − way ε |F| = ground.
+                ground_n / (1.0 - sums.loss_share * (way * ground_n).signum())
+            }
+            Command::Push(wanted) => effective_mass_kg * wanted,
+        };
+        situation.tractive_force_n = wanted_n;
+        demand.force_n = self.govern(&situation, command, given, layout, states, rates);
+        let slip_of = |force_n: f64| {
+            if sums.slip_per_n == 0.0 {
+                return speed_m_s;
+            }
+            let slip = (sums.slip_per_n * force_n * direction).clamp(-MOST_SLIP, MOST_SLIP);
+            speed_m_s / (1.0 - slip)
+        };
+        demand.speed_m_s = slip_of(demand.force_n);
+        let mut delivery = self.driveline.deliver(&demand, &states[range.clone()], &mut rates[range.clone()]);
+        if sums.slip_per_n != 0.0 && delivery.force_n != demand.force_n {
+            demand.speed_m_s = slip_of(delivery.force_n);
+            delivery = self.driveline.deliver(&demand, &states[range.clone()], &mut rates[range]);
+        }
+        if let Command::Recorded(force_n) = command {
+            // The recording has the last word on the force; what the model would not have given is made up by no one.
+            delivery.source_power_w += (force_n - delivery.force_n) * demand.speed_m_s;
+            delivery.force_n = force_n;
+        }
+        let brake_n = match command {
+            Command::Accelerate(_) | Command::Push(_) if direction != 0.0 => {
+                let short_n = (delivery.force_n - wanted_n) * direction;
+                (short_n - lost_n(delivery.force_n) + lost_n(wanted_n)).max(0.0)
+            }
+            // A driver who wants to stand still keeps a foot on the brake.
+            Command::Accelerate(wanted) | Command::Push(wanted) if wanted <= 0.0 => f64::INFINITY,
+            _ => 0.0,
+        };
+        let driving_n = delivery.force_n + free_n;
+        let resisting_n = held_n + lost_n(delivery.force_n) + brake_n;
+        let (way, acceleration_m_s2) = asked.moves(driving_n, resisting_n);
+        Rolled {
+            demand,
+            delivery,
+            ground_n,
+            brake_n,
+            way,
+            acceleration_m_s2,
+            traction_n: delivery.force_n,
+            slip: 0.0,
+            rolling_m_s: speed_m_s,
+        }
+    }
+
+    /// Resistance of the ground to a whole vehicle [N].
+    #[inline(always)]
+    fn ground_n(&self, situation: &Situation, rolling_speed: f64) -> f64 {
+        let Situation { position_m, ref place, .. } = *situation;
+        match self.vehicle.resistance {
+            Resistance::Drag { .. } => {
+                let weight_n = situation.mass_kg * self.gravity_m_s2;
+                let load_n = if place.sin_slope == 0.0 { weight_n } else { weight_n * place.cos_slope() };
+                let contact = Contact { load_n, speed_m_s: rolling_speed, position_m };
+                self.soil.as_ref().map_or(0.0, |soil| soil.resistance_at_n(&contact, place))
+            }
+            Resistance::RoadLoad { f0_n, f1_n_s_m, .. } => {
+                // The constant part goes with the mass: UN GTR 15, annex 4, correction K1.
+                let carried = situation.mass_kg / self.vehicle.mass_kg;
+                carried * f0_n + f1_n_s_m * rolling_speed
+            }
+        }
+    }
+}

@@ -4,6 +4,8 @@
 
 #[path = "whole/commands.rs"]
 mod commands;
+#[path = "whole/days.rs"]
+mod days;
 #[path = "whole/files.rs"]
 mod files;
 #[path = "whole/hybrids.rs"]

@@ -9,7 +9,7 @@ use crate::picture;
 use crate::say::Say;
 use headland_plugin::Registry;
 use headland_scenario::{Remark, RunSpec, Scenario};
-use headland_sim::{End, Ledger, Outcome, simulate};
+use headland_sim::{Driven, End, Ledger, Outcome, simulate};
 use headland_trace::Run;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -37,6 +37,8 @@ pub struct RunSummary {
     steps: usize,
     energy: Ledger,
     relative_energy_residual: f64,
+    /// When and where each phase began and ended, and what ended it.
+    phases: Vec<Driven>,
 }
 
 /// A simulated scenario.
@@ -139,6 +141,7 @@ fn summary_of(id: &str, outcome: &Outcome) -> RunSummary {
         steps: outcome.steps,
         relative_energy_residual: outcome.ledger.relative_residual(),
         energy: outcome.ledger.clone(),
+        phases: outcome.phases.clone(),
     }
 }
 

@@ -133,6 +133,23 @@ fn an_empty_battery_ends_the_run_with_time_place_and_reason() {
     assert!(outcome.trace.time_s().len() > 10);
 }
 
+/// With a start under full load the turbocharger takes a while, and the tractor does not move at once.
+#[test]
+fn a_drive_that_waits_for_its_boost_is_not_given_up() {
+    let text = "(about: \"start\", vehicle: include(\"vehicles/xerion_3800_powershift.ron\"),
+          ground: (terrain: Flat, soil: Constant(coefficient: 0.06)), air: (density_kg_m3: 1.2),
+          start: (position_m: 0, speed_m_s: 2.2), tasks: [Drawbar(force_n: 62e3)],
+          cycle: [Reach(speed_m_s: 2.3, acceleration_m_s2: 0.3), Hold(for_s: 5)],
+          simulation: (fidelity: Longitudinal, step_s: 0.02))";
+    let outcome = run(text, &[]);
+    assert_eq!(outcome.end, End::Finished);
+    let acceleration = outcome.trace.get("acceleration_m_s2").unwrap();
+    assert!(acceleration[0] < 0.0, "nothing had to be waited for: {}", acceleration[0]);
+    let hopeless = text.replace("62e3", "100e3");
+    let End::Stopped { time_s, reason, .. } = run(&hopeless, &[]).end else { panic!("it pulled 100 kN") };
+    assert!(reason.contains("cannot bring the vehicle") && time_s >= 4.0, "{time_s} {reason}");
+}
+
 #[test]
 fn off_its_map_a_transmission_is_not_extrapolated() {
     let outcome = steady("xerion_3800_mapped", 10.0, 75e3, &[]);

@@ -19,6 +19,9 @@ use headland_plugin::{Bound, Parameter, Refusal, parameter};
 use serde::Deserialize;
 use std::f64::consts::PI;
 
+/// How long a driveline behind an engine may wait for boost and shifts [s]: longer than turbochargers take from idle.
+pub(crate) const PATIENCE_S: f64 = 4.0;
+
 /// How an engine's parameters are told, as `engine.` of a driveline.
 pub(crate) const ENGINE: [Parameter; 21] = [
     parameter("engine.displacement_m3", "m³", "swept volume, four strokes, V_d")

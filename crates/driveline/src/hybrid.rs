@@ -9,7 +9,7 @@
 //!
 //! Other consumers are always served, beyond the limits of the store if need be.
 
-use crate::engine::{Circumstance, Engine, Running};
+use crate::engine::{Circumstance, Engine, PATIENCE_S, Running};
 use crate::parts::crossing;
 use crate::store::{Drawn, Store};
 use headland_plugin::{
@@ -383,6 +383,10 @@ impl<T: Topology> Driveline for Managed<T> {
         let changed = base[RUNS] != runs || base[SET] != set;
         (base[RUNS], base[SET]) = (runs, set);
         chosen || changed
+    }
+
+    fn patience_s(&self) -> f64 {
+        PATIENCE_S
     }
 
     fn needs_management(&self) -> bool {

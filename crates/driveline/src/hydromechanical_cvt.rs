@@ -10,7 +10,7 @@
 //! consumers are always served, beyond full load if need be. Leaves out inertia of the engine and the time and heat that a
 //! change of ratio or range takes.
 
-use crate::engine::{Circumstance, ENGINE, Engine, Running};
+use crate::engine::{Circumstance, ENGINE, Engine, PATIENCE_S, Running};
 use crate::hydromechanical::{Hydromechanical, TRANSMISSION};
 use crate::parts::{crossing, join};
 use headland_plugin::{Card, Delivery, Demand, Driveline, Parameter, Plugin, Readings, Refusal, State};
@@ -172,6 +172,10 @@ impl Driveline for HydromechanicalCvt {
             (states[RANGE], states[SINCE]) = (range, 0.0);
         }
         changes
+    }
+
+    fn patience_s(&self) -> f64 {
+        PATIENCE_S
     }
 
     fn exhausted(&self, demand: &Demand, _: &Delivery, _: &[f64]) -> Option<String> {

@@ -9,7 +9,7 @@
 //! Nothing is extrapolated: a speed or a force at which the map holds nothing ends the run with that reason. An engine speed
 //! of 0 in the map stands for 'never seen'. In neutral the engine idles.
 
-use crate::engine::{Circumstance, ENGINE, Engine};
+use crate::engine::{Circumstance, ENGINE, Engine, PATIENCE_S};
 use crate::parts::{crossing, increasing, join, place, refuse};
 use headland_plugin::{
     Bound, Card, Delivery, Demand, Driveline, Parameter, Plugin, Readings, Refusal, State, parameter,
@@ -222,6 +222,10 @@ impl Driveline for MappedCvt {
             ..Readings::NONE
         };
         delivery
+    }
+
+    fn patience_s(&self) -> f64 {
+        PATIENCE_S
     }
 
     fn exhausted(&self, demand: &Demand, _: &Delivery, _: &[f64]) -> Option<String> {

@@ -11,7 +11,7 @@
 //! in gear. A shift up passes from clutch to clutch without interruption and its slip is a loss; that of a shift down is left
 //! out. So are inertia of the engine and dead time.
 
-use crate::engine::{Circumstance, ENGINE, Engine};
+use crate::engine::{Circumstance, ENGINE, Engine, PATIENCE_S};
 use crate::parts::{hold, increasing, join, refuse};
 use headland_plugin::{
     Bound, Card, Delivery, Demand, Driveline, Parameter, Plugin, Readings, Refusal, State, parameter,
@@ -268,6 +268,10 @@ impl Driveline for Powershift {
         states[GEAR] = gear;
         states[SINCE] = 0.0;
         true
+    }
+
+    fn patience_s(&self) -> f64 {
+        PATIENCE_S
     }
 
     fn exhausted(&self, demand: &Demand, _: &Delivery, _: &[f64]) -> Option<String> {

@@ -127,6 +127,12 @@ pub trait Driveline: Debug + Send + Sync {
         None
     }
 
+    /// How long it may give less than it will in the end [s]: boost that builds up, a shift. So long a driver who asks for
+    /// more waits.
+    fn patience_s(&self) -> f64 {
+        0.0
+    }
+
     /// Whether two stores have to be managed.
     fn needs_management(&self) -> bool {
         false

@@ -6,9 +6,13 @@ use crate::ending::Ending;
 use crate::plan::{EngineSpeed, Phase, Until};
 use crate::reference::{Driver, Reference};
 use crate::step::{Machine, Moment};
+use std::cell::Cell;
 
 /// Below this acceleration [m/s²] a vehicle that wants more has reached the end of its force.
 const NO_MORE_ACCELERATION_M_S2: f64 = 1e-5;
+
+/// A gain of speed [m/s] that tells a drive that is getting there from one that sways.
+const PROGRESS_M_S: f64 = 1e-3;
 
 impl Running<'_> {
     /// What the driver keeps at hand, by time.
@@ -77,7 +81,17 @@ impl Running<'_> {
         let given = self.given();
         let control = |at: &Moment| (Command::Accelerate(rate), given(at.time_s));
         let ending = Ending::at_speed(target, up);
+        let patience_s = self.machine.model.driveline.patience_s();
+        // How far it came, and when.
+        let best = Cell::new((f64::NEG_INFINITY, self.machine.time_s));
         self.until(&control, &ending, f64::INFINITY, &|machine, instant| {
+            let progress = machine.speed_m_s() * rate.signum();
+            if progress > best.get().0 + PROGRESS_M_S {
+                best.set((progress, machine.time_s));
+            }
+            if machine.time_s - best.get().1 < patience_s {
+                return None;
+            }
             let short = (machine.speed_m_s() - target).abs() > 0.0
                 && instant.acceleration_m_s2 * rate.signum() < NO_MORE_ACCELERATION_M_S2;
             short.then(|| {

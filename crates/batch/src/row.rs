@@ -133,8 +133,10 @@ fn integral(trace: &Trace, channels: &[&str]) -> f64 {
         .sum()
 }
 
-/// Accounts of the ledger that are electric stores: what they gain is theirs.
-const STORES: [&str; 3] = ["battery", "supercapacitor", "store"];
+/// Stores that a vehicle without an engine draws on.
+const STORES: [&str; 2] = ["battery", "supercapacitor"];
+/// What ends the name of the account of what a store beside an engine gains, as in `battery charge`.
+const GAINED: &str = " charge";
 
 /// Energy that electric stores gave, before their own losses [J]; NaN where there is none.
 fn electricity_j(outcome: &Outcome) -> f64 {
@@ -142,12 +144,8 @@ fn electricity_j(outcome: &Outcome) -> f64 {
     if STORES.contains(&ledger.source_name.as_str()) {
         return ledger.source_j;
     }
-    let gained: Vec<f64> = ledger
-        .sinks
-        .iter()
-        .filter(|sink| STORES.contains(&sink.name.as_str()))
-        .map(|sink| -sink.energy_j)
-        .collect();
+    let gained: Vec<f64> =
+        ledger.sinks.iter().filter(|sink| sink.name.ends_with(GAINED)).map(|sink| -sink.energy_j).collect();
     if gained.is_empty() { f64::NAN } else { gained.iter().sum() }
 }
 

@@ -69,7 +69,7 @@ fn fuel_is_told_at_the_charge_that_the_run_began_with() {
                 ("state_of_charge", vec![0.6, 0.7, 0.5]),
             ],
             "fuel",
-            &[("battery", gained)],
+            &[("battery", 50.0), ("battery charge", gained)],
         );
         let row = Row::of(0, &run, &accounting());
         assert!((row.value("fuel_at_charge_kg") - expected).abs() < 1e-12, "{gained}");

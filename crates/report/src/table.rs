@@ -20,6 +20,8 @@ pub enum Cell {
         /// Upper end.
         upper: f64,
     },
+    /// A number as it is to be read, as `+2.3 ± 0.1`.
+    Written(String),
 }
 
 impl From<&str> for Cell {
@@ -92,6 +94,7 @@ fn cell_html(cell: &Cell, heads_row: bool) -> String {
     match cell {
         Cell::Text(text) if heads_row => format!("<th scope=\"row\">{}</th>", escape(text)),
         Cell::Text(text) => format!("<td>{}</td>", escape(text)),
+        Cell::Written(text) => format!("<td class=\"number\">{}</td>", escape(text)),
         Cell::Number(value) => format!("<td class=\"number\">{}</td>", number::number(*value)),
         Cell::Interval { value, lower, upper } => {
             let (value, interval) = number::with_interval(*value, *lower, *upper);

@@ -39,8 +39,9 @@ impl Content<'_> {
         Ok((drawn > 0).then_some(section))
     }
 
-    /// The accounts of variants side by side, as stacked bars.
-    fn accounts(&self, cells: &[&Cell], (cycle, ground): (usize, usize)) -> Plot {
+    /// Accounts that can be seen in some configuration, so that each has one colour on the whole page.
+    fn names(&self) -> Vec<&str> {
+        let cells = &self.summary.cells;
         let mut names: Vec<&str> = Vec::new();
         for (name, _) in cells.iter().flat_map(|cell| &cell.accounts) {
             let apart = name.starts_with("from ") || name == "residual";
@@ -48,15 +49,19 @@ impl Content<'_> {
                 names.push(name);
             }
         }
-        let value = |cell: &Cell, name: &str| {
-            cell.accounts.iter().find(|(other, _)| other == name).map_or(0.0, |(_, energy)| energy.mean)
-        };
-        let greatest = cells
-            .iter()
-            .flat_map(|cell| names.iter().map(|name| value(cell, name).abs()))
-            .fold(0.0, f64::max);
         // What would be thinner than a line is only told in the table of results.
-        names.retain(|name| cells.iter().any(|cell| value(cell, name).abs() > 2e-3 * greatest));
+        let seen = |cell: &Cell, name: &str| {
+            let whole: f64 = cell.accounts.iter().map(|(_, energy)| energy.mean.abs()).fold(0.0, f64::max);
+            account(cell, name).is_some_and(|energy| energy.abs() > 5e-3 * whole)
+        };
+        names.retain(|name| cells.iter().any(|cell| seen(cell, name)));
+        names
+    }
+
+    /// The accounts of variants side by side, as stacked bars.
+    fn accounts(&self, cells: &[&Cell], (cycle, ground): (usize, usize)) -> Plot {
+        let names = self.names();
+        let value = |cell: &Cell, name: &str| account(cell, name).unwrap_or(0.0);
         let bars = names.iter().map(|name| Bar {
             name: (*name).to_owned(),
             values: cells.iter().map(|cell| value(cell, name)).collect(),
@@ -98,4 +103,9 @@ impl Content<'_> {
         let place = self.place(cell.cycle, cell.ground);
         Ok(staged_flow(&format!("{}: {place}", self.variant(cell.variant)), &stages))
     }
+}
+
+/// Mean energy of an account [J].
+fn account(cell: &Cell, name: &str) -> Option<f64> {
+    cell.accounts.iter().find(|(other, _)| other == name).map(|(_, energy)| energy.mean)
 }

@@ -26,6 +26,11 @@ const USUAL: [Measure; 7] = [
 /// Cycles on grounds that are shown one by one; tables hold all.
 const IN_DETAIL: usize = 9;
 
+/// Measures that are shown as bars.
+const BARS: usize = 3;
+/// Places that the first lines of the page name.
+const TOLD: usize = 3;
+
 /// What all parts of the page look at.
 #[derive(Clone, Copy)]
 struct Content<'a> {
@@ -104,7 +109,7 @@ impl Content<'_> {
         let more = self.summary.measures[index].more_is_better() == Some(true);
         let name = self.axis(index).label;
         let mut words = Vec::new();
-        for place in self.places().into_iter().take(IN_DETAIL) {
+        for place in self.places().into_iter().take(TOLD) {
             let share = |variant: usize| {
                 let share = self.cell(variant, place)?.against[index].mean;
                 share.is_finite().then_some((variant, share))
@@ -114,17 +119,18 @@ impl Content<'_> {
             });
             if let Some((variant, share)) = best {
                 words.push(format!(
-                    "{} in {}: {}",
+                    "{} {} in {}",
                     self.variant(variant),
-                    self.place(place.0, place.1),
-                    percent(share)
+                    percent(share),
+                    self.place(place.0, place.1)
                 ));
             }
         }
         if words.is_empty() {
             return String::new();
         }
-        format!("The best other than {} by {name}: {}.", self.variant(base), words.join("; "))
+        let rest = if self.places().len() > TOLD { ", and so on below" } else { "" };
+        format!("By {name}, the best against {}: {}{rest}.", self.variant(base), words.join("; "))
     }
 
     fn overview(&self) -> Section {
@@ -135,7 +141,7 @@ impl Content<'_> {
         }
         let asked = asked(plan, summary);
         let mut section = Section::new("At a glance").with(Item::Figures(figures));
-        for &index in asked.iter().take(2) {
+        for index in asked.iter().copied().filter(|index| self.differs(*index)).take(BARS) {
             section = section.with(self.bars(index));
         }
         section = section.with(self.results());
@@ -143,6 +149,17 @@ impl Content<'_> {
             section = section.with(table);
         }
         section
+    }
+
+    /// Whether a measure is another one in some variants than in others, so that a picture of it says something.
+    fn differs(&self, index: usize) -> bool {
+        let one = self.plan.comparison.variants.len() < 2;
+        one || self.places().into_iter().any(|place| {
+            let means: Vec<f64> = (0..self.plan.comparison.variants.len())
+                .filter_map(|variant| Some(self.cell(variant, place)?.measures[index].mean))
+                .collect();
+            varies(&means)
+        })
     }
 
     /// Bars of a measure, the spread of repetitions on them.
@@ -174,6 +191,14 @@ impl Content<'_> {
         let categories = places.iter().map(|(cycle, ground)| self.place(*cycle, *ground)).collect();
         Plot::new(title, Bars { categories, axis, bars, ..Bars::default() }).words(words)
     }
+}
+
+/// Whether values differ by more than a thousandth of the largest.
+fn varies(values: &[f64]) -> bool {
+    let (least, greatest) = values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |ends, value| (ends.0.min(*value), ends.1.max(*value)));
+    greatest - least > 1e-3 * greatest.abs().max(least.abs())
 }
 
 /// `−5.4 %`

@@ -1,15 +1,35 @@
 //! Configurations by two measures at once, and those that no other beats in both.
 
-use super::{Content, IN_DETAIL, asked};
+use super::{Content, IN_DETAIL, asked, varies};
 use headland_batch::Choice;
 use headland_report::{Cloud, Plot, Scatter, Section};
 
 impl Content<'_> {
+    /// Configurations to choose from: a parameter that is varied alone asks a question and offers no choice.
+    fn choices(&self) -> Vec<&Choice> {
+        let points = &self.plan.comparison.points;
+        let chosen = |choice: &&Choice| {
+            points.end_of(choice.spec.point).is_none()
+                && choice.measures.iter().any(|value| value.is_finite())
+        };
+        self.summary.choices.iter().filter(chosen).collect()
+    }
+
     /// A plot for each cycle and ground; none where there is nothing to choose from.
     pub(super) fn pareto(&self) -> Option<Section> {
         let better = |index: &usize| self.summary.measures[*index].more_is_better();
-        let mut wanted = asked(self.plan, self.summary).into_iter().filter(|index| better(index).is_some());
-        let (x, y) = (wanted.next()?, wanted.next()?);
+        let mut wanted = asked(self.plan, self.summary);
+        wanted.extend(
+            self.summary.present().into_iter().filter(|index| !wanted.contains(index)).collect::<Vec<_>>(),
+        );
+        let choices: Vec<&Choice> = self.choices();
+        let column =
+            |index: usize| -> Vec<f64> { choices.iter().map(|choice| choice.measures[index]).collect() };
+        wanted.retain(|index| better(index).is_some() && varies(&column(*index)));
+        let x = *wanted.first()?;
+        // Carbon dioxide against fuel is a straight line and no choice.
+        let y =
+            *wanted.iter().skip(1).find(|index| correlation(&column(x), &column(**index)).abs() < 0.999)?;
         let sign = |index: usize| if better(&index) == Some(true) { -1.0 } else { 1.0 };
         let mut section = Section::new("Choices").words(
             "Each point is a configuration, the mean of its repetitions. No other configuration is better in both by the \
@@ -23,14 +43,13 @@ impl Content<'_> {
         }
         let mut plots = 0;
         for (cycle, ground) in self.places().into_iter().take(IN_DETAIL) {
-            let here: Vec<&Choice> = self
-                .summary
-                .choices
+            let here: Vec<&Choice> = choices
                 .iter()
+                .copied()
                 .filter(|choice| (choice.spec.cycle, choice.spec.ground) == (cycle, ground))
                 .filter(|choice| choice.measures[x].is_finite() && choice.measures[y].is_finite())
                 .collect();
-            if here.len() < 2 {
+            if here.len() < 3 {
                 continue;
             }
             let cloud = |name: String, of: Vec<(f64, f64)>, joined: bool| {
@@ -60,6 +79,21 @@ impl Content<'_> {
         }
         (plots > 0).then_some(section)
     }
+}
+
+/// Correlation of the pairs in which both are numbers; 1 where there is none.
+fn correlation(one: &[f64], other: &[f64]) -> f64 {
+    let pairs: Vec<(f64, f64)> = one
+        .iter()
+        .copied()
+        .zip(other.iter().copied())
+        .filter(|(x, y)| x.is_finite() && y.is_finite())
+        .collect();
+    let count = pairs.len() as f64;
+    let mean = pairs.iter().fold((0.0, 0.0), |sum, (x, y)| (sum.0 + x / count, sum.1 + y / count));
+    let sum = |of: fn(f64, f64) -> f64| pairs.iter().map(|(x, y)| of(x - mean.0, y - mean.1)).sum::<f64>();
+    let product = sum(|x, y| x * y) / (sum(|x, _| x * x) * sum(|_, y| y * y)).sqrt();
+    if product.is_finite() { product } else { 1.0 }
 }
 
 /// The points that no other is better than in both, from left to right. A sign of −1 wants more.

@@ -7,6 +7,8 @@ use headland_report::{Axis, Bar, Bars, Plot, Section};
 
 /// Parameters of one plot.
 const SHOWN: usize = 15;
+/// Share of a result that a parameter has to change to be shown.
+const LEAST: f64 = 5e-4;
 /// Measures that are shown.
 const MEASURES: usize = 2;
 /// Plots of a page.
@@ -31,7 +33,7 @@ impl Content<'_> {
                     .summary
                     .effects
                     .iter()
-                    .filter(|effect| effect.variant == variant && size(effect, index).is_finite())
+                    .filter(|effect| effect.variant == variant && size(effect, index) > LEAST)
                     .collect();
                 if effects.is_empty() || plots == PLOTS {
                     continue;

@@ -1,6 +1,7 @@
 //! Tables of a batch: results, differences to the baseline, charge, runs without an end.
 
 use super::Content;
+use crate::page::short;
 use headland_batch::{Measure, Statistics};
 use headland_report::{Axis, Cell, Item, Section, Table};
 
@@ -39,11 +40,7 @@ impl Content<'_> {
         let mut heads = vec![Axis::new("variant", ""), Axis::new("cycle", "")];
         heads.extend(columns.iter().map(|index| self.axis(*index)));
         heads.push(Axis::new("runs", ""));
-        Table {
-            title: "Results, mean (one standard deviation to either side)".to_owned(),
-            columns: heads,
-            rows,
-        }
+        Table { title: "Results: mean ± one standard deviation".to_owned(), columns: heads, rows }
     }
 
     /// Differences to the baseline in per cent, paired.
@@ -53,11 +50,7 @@ impl Content<'_> {
         for (cycle, ground) in self.places() {
             for variant in (0..self.plan.comparison.variants.len()).filter(|variant| *variant != base) {
                 let Some(cell) = self.cell(variant, (cycle, ground)) else { continue };
-                let share = |index: &usize| {
-                    let mut scaled = cell.against[*index];
-                    scaled.scale(100.0);
-                    number(&scaled)
-                };
+                let share = |index: &usize| difference(&cell.against[*index]);
                 let mut row = vec![Cell::from(self.variant(variant)), Cell::from(self.place(cycle, ground))];
                 row.extend(asked.iter().map(share));
                 rows.push(row);
@@ -68,8 +61,10 @@ impl Content<'_> {
         }
         let mut columns = vec![Axis::new("variant", ""), Axis::new("cycle", "")];
         columns.extend(asked.iter().map(|index| Axis::new(self.axis(*index).label, "%")));
-        let title =
-            format!("Against {}, run by run (one standard deviation of the difference)", self.variant(base));
+        let title = format!(
+            "Against {}, run by run: mean ± one standard deviation of the difference",
+            self.variant(base)
+        );
         Some(Table { title, columns, rows })
     }
 
@@ -149,12 +144,35 @@ impl Content<'_> {
     }
 }
 
-/// A mean, with one standard deviation to either side where there is one.
+/// A mean, with its standard deviation where there is one worth the ink.
 fn number(value: &Statistics) -> Cell {
+    /// A spread below this share of the mean is told by none of four digits.
+    const SHOWN: f64 = 5e-4;
     let deviation = value.deviation();
-    if deviation > 0.0 {
-        Cell::Interval { value: value.mean, lower: value.mean - deviation, upper: value.mean + deviation }
+    if deviation > SHOWN * value.mean.abs() {
+        Cell::Written(format!("{} ± {}", short(value.mean), rounded(deviation)))
     } else {
         Cell::Number(value.mean)
     }
+}
+
+/// A difference in per cent, to a hundredth.
+fn difference(share: &Statistics) -> Cell {
+    if share.count == 0 {
+        return Cell::Number(f64::NAN);
+    }
+    let sign = if share.mean > 0.0 { "+" } else { "" };
+    let mean = short((1e4 * share.mean).round() / 100.0);
+    let deviation = (1e4 * share.deviation()).round() / 100.0;
+    Cell::Written(if deviation.is_nan() {
+        format!("{sign}{mean}")
+    } else {
+        format!("{sign}{mean} ± {}", short(deviation))
+    })
+}
+
+/// Two significant digits.
+fn rounded(value: f64) -> String {
+    let step = 10f64.powf(value.log10().floor() - 1.0);
+    short((value / step).round() * step)
 }

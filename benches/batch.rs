@@ -1,0 +1,67 @@
+//! Ten thousand short runs: one core against two, and what memory they take. `cargo bench --bench batch`.
+//!
+//! Each run is put together from text, simulated, counted and written to the journal, as `headland batch` does it.
+#![expect(clippy::print_stdout, reason = "a benchmark says what it measured")]
+#![allow(clippy::unwrap_used, reason = "a benchmark stops where something is missing")]
+
+use headland_batch::{Comparison, Journal, Plan, Settings, execute, table};
+use std::path::Path;
+use std::time::Instant;
+
+/// A tractor that pulls a trailer up to speed: 20 s in steps of 50 ms.
+const COMPARISON: &str = r#"(
+    about: "short runs",
+    variants: [(name: "tractor", vehicle: include("vehicles/xerion_3800.ron"))],
+    cycles: [(
+        name: "pull away",
+        tasks: [Drawbar(force_n: "8 kN")],
+        cycle: [Reach(speed_m_s: "20 km/h", acceleration_m_s2: 0.5), Hold(for_s: 9)],
+    )],
+    grounds: [(name: "sand", ground: include("grounds/moist_sand.ron"))],
+    air: (density_kg_m3: 1.2),
+    sample: (count: COUNT, seed: 1, of: {"vehicle.mass_kg": ("12 t", "15 t"), "ground.soil.coefficient": (0.04, 0.09)}),
+    simulation: (fidelity: Longitudinal, step_s: 0.05),
+)"#;
+
+/// Seconds that the runs take on so many threads, the table of results left out.
+fn seconds(runs: u32, threads: usize) -> f64 {
+    let registry = headland_stock::registry();
+    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
+    let text = COMPARISON.replace("COUNT", &runs.to_string());
+    let comparison = Comparison::of_text("bench", &text, &scenarios).unwrap();
+    let plan = Plan::new(comparison, &registry, 1).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let identity = plan.comparison.identity(1);
+    let mut journal = Journal::open(folder.path(), &identity, plan.total(), false).unwrap();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let settings = Settings { traces: false, stop: &|| false, progress: &|_| {} };
+    let begin = Instant::now();
+    pool.install(|| execute(&plan, &registry, &mut journal, &settings)).unwrap();
+    let seconds = begin.elapsed().as_secs_f64();
+    assert_eq!(journal.finished(), u64::from(runs));
+    table::write(&plan, &mut journal, &folder.path().join("results.parquet")).unwrap();
+    seconds
+}
+
+/// Greatest resident memory so far [MB]; NaN where the system does not tell.
+fn memory_mb() -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    line.and_then(|line| line.trim().trim_end_matches("kB").trim().parse().ok()).map_or(f64::NAN, |kb: f64| kb / 1024.0)
+}
+
+fn main() {
+    // Memory first: its greatest value never falls.
+    for runs in [1_000, 10_000, 40_000] {
+        seconds(runs, 2);
+        println!("batch/memory_{runs}_runs          {:>8.1} MB", memory_mb());
+    }
+    let mut ratios = Vec::new();
+    for _ in 0..5 {
+        let (one, two) = (seconds(10_000, 1), seconds(10_000, 2));
+        println!("batch/10000_runs  one core {one:>6.2} s  two cores {two:>6.2} s  ratio {:.3}", one / two);
+        ratios.push(one / two);
+    }
+    ratios.sort_by(f64::total_cmp);
+    println!("batch/ratio_two_to_one          {:>8.3} (median of {})", ratios[ratios.len() / 2], ratios.len());
+}

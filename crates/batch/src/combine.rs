@@ -156,11 +156,12 @@ pub(crate) fn children(node: &Node) -> Vec<&Node> {
 }
 
 /// Where the numbers of all fields named `seed` stand.
-pub(crate) fn seeds(document: &Document) -> Vec<(Range<usize>, u64)> {
-    fn collect(node: &Node, text: &str, found: &mut Vec<(Range<usize>, u64)>) {
+pub(crate) fn seeds(document: &Document) -> Vec<(Range<usize>, f64)> {
+    fn collect(node: &Node, text: &str, found: &mut Vec<(Range<usize>, f64)>) {
         if let Shape::Struct { fields, .. } = &node.shape {
             for field in fields.iter().filter(|field| field.key == "seed") {
-                if let Ok(seed) = text[field.value.span.clone()].replace('_', "").parse() {
+                let number = text[field.value.span.clone()].replace('_', "").parse::<f64>();
+                if let Some(seed) = number.ok().filter(|seed| seed.fract() == 0.0 && *seed >= 0.0) {
                     found.push((field.value.span.clone(), seed));
                 }
             }

@@ -189,8 +189,9 @@ impl Plan {
 
 /// The seed of a repetition: another one for each seed that is written and each repetition, and one that every
 /// configuration file can hold.
-fn repeated(own: u64, seed: u64, repetition: u32) -> u64 {
-    let hash = hash(hash(hash(BASIS, &seed.to_le_bytes()), &own.to_le_bytes()), &repetition.to_le_bytes());
+fn repeated(own: f64, seed: u64, repetition: u32) -> u64 {
+    let hash =
+        hash(hash(hash(BASIS, &seed.to_le_bytes()), &own.to_bits().to_le_bytes()), &repetition.to_le_bytes());
     (hash >> 32) ^ (hash & 0xffff_ffff)
 }
 

@@ -70,7 +70,7 @@ fn seeds_of_models_change_with_the_repetition_and_not_with_the_variant() {
     let comparison = Comparison::of_text("test.ron", &text, Path::new("")).unwrap();
     let document =
         comparison.scenario(&comparison.variants[0], &comparison.cycles[0], &comparison.grounds[0]).unwrap();
-    assert_eq!(crate::combine::seeds(&document).iter().map(|(_, seed)| *seed).collect::<Vec<_>>(), [4]);
+    assert_eq!(crate::combine::seeds(&document).iter().map(|(_, seed)| *seed).collect::<Vec<_>>(), [4.0]);
 }
 
 #[test]

@@ -31,7 +31,7 @@ pub struct Cell {
     pub accounts: Vec<(String, Statistics)>,
     /// Change of the state of charge.
     pub charge: Statistics,
-    /// Fuel [kg] over energy that electric stores gave [J].
+    /// Fuel [kg] over energy that electric stores gave [J]; without points unless the charge at the start alone is moved.
     pub fuel_over_store: Line,
 }
 
@@ -121,6 +121,8 @@ struct Gathered {
     one_choice_of: u64,
     open: Option<(Spec, Vec<Statistics>)>,
     troubles: Vec<(u64, Status, String)>,
+    /// Whether runs of a configuration differ in the charge that they begin with and in nothing else.
+    charges: bool,
 }
 
 impl Gathered {
@@ -161,6 +163,10 @@ impl Gathered {
             choices: Vec::new(),
             open: None,
             troubles: Vec::new(),
+            charges: comparison.scatter.is_empty() && {
+                let mut moved = comparison.points.moved();
+                matches!((moved.next(), moved.next()), (Some((path, _)), None) if path.ends_with("charge"))
+            },
         }
     }
 
@@ -182,6 +188,9 @@ impl Gathered {
         let varied = comparison.points.end_of(spec.point);
         if varied.is_none() {
             self.cells[index].take(row, &all);
+        }
+        if self.charges {
+            self.cells[index].fuel_over_store.add(row.value("electricity_j"), row.value("fuel_kg"));
         }
         self.cells[index].finished += 1;
         self.choose(plan, spec, &all);
@@ -332,6 +341,5 @@ impl Cell {
             }
         }
         self.charge.add(row.value("state_of_charge_end") - row.value("state_of_charge_start"));
-        self.fuel_over_store.add(row.value("electricity_j"), row.value("fuel_kg"));
     }
 }

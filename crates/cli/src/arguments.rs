@@ -169,7 +169,7 @@ pub struct BatchOptions {
 /// Options of `headland demo`.
 #[derive(Args, Debug)]
 pub struct DemoOptions {
-    /// `coastdown`: simulate ten coast-downs, add sensor noise, analyse, compare, report
+    /// `coastdown`: simulate ten coast-downs, add sensor noise, analyse, compare, report; `batch`: compare three drivelines
     #[arg(value_name = "NAME", default_value = "coastdown")]
     pub name: String,
     /// List the examples

@@ -14,6 +14,26 @@ pub const COAST_DOWN_STUDY: [(&str, &str); 3] = [
     ("grounds/moist_sand.ron", include_str!("../../../scenarios/grounds/moist_sand.ron")),
 ];
 
+/// Three drivelines of the Xerion 3800 at work.
+pub const THREE_DRIVELINES: [(&str, &str); 13] = [
+    ("comparisons/three_drivelines.ron", include_str!("../../../scenarios/comparisons/three_drivelines.ron")),
+    ("comparisons/cycles/ploughing.ron", include_str!("../../../scenarios/comparisons/cycles/ploughing.ron")),
+    ("comparisons/cycles/transport.ron", include_str!("../../../scenarios/comparisons/cycles/transport.ron")),
+    ("comparisons/cycles/mixed_day.ron", include_str!("../../../scenarios/comparisons/cycles/mixed_day.ron")),
+    ("vehicles/xerion_3800_cvt.ron", include_str!("../../../scenarios/vehicles/xerion_3800_cvt.ron")),
+    (
+        "vehicles/xerion_3800_parallel.ron",
+        include_str!("../../../scenarios/vehicles/xerion_3800_parallel.ron"),
+    ),
+    ("vehicles/xerion_3800_series.ron", include_str!("../../../scenarios/vehicles/xerion_3800_series.ron")),
+    ("parts/engine_254_kw.ron", include_str!("../../../scenarios/parts/engine_254_kw.ron")),
+    ("parts/transmission_50_km_h.ron", include_str!("../../../scenarios/parts/transmission_50_km_h.ron")),
+    ("parts/motor_100_kw.ron", include_str!("../../../scenarios/parts/motor_100_kw.ron")),
+    ("parts/motor_250_kw.ron", include_str!("../../../scenarios/parts/motor_250_kw.ron")),
+    ("parts/battery_18_kwh.ron", include_str!("../../../scenarios/parts/battery_18_kwh.ron")),
+    ("parts/battery_58_kwh.ron", include_str!("../../../scenarios/parts/battery_58_kwh.ron")),
+];
+
 /// Writes the files into `scenarios`; gives the path of the first.
 pub fn write(files: &Files, output: &mut Output) -> Result<PathBuf, Failure> {
     let mut first = None;

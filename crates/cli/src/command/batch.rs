@@ -135,7 +135,7 @@ fn machine(failure: Failure) -> Failure {
 }
 
 /// Says what came of it.
-fn finish(done: &Done, output: &Output, say: Say) -> Result<(), Failure> {
+pub fn finish(done: &Done, output: &Output, say: Say) -> Result<(), Failure> {
     say.result(&text(done, output), &document(&done.plan, &done.summary))?;
     let Summary { unfinished, troubles, .. } = &done.summary;
     match troubles.first() {
@@ -198,7 +198,7 @@ fn document(plan: &Plan, summary: &Summary) -> Document {
 const IN_TEXT: usize = 4;
 
 /// What came of it, for a person at a terminal.
-pub fn text(done: &Done, output: &Output) -> String {
+fn text(done: &Done, output: &Output) -> String {
     let (plan, summary) = (&done.plan, &done.summary);
     let comparison = &plan.comparison;
     let mut text = format!("{}\n  {}\n", comparison.about, counted(plan));

@@ -1,6 +1,7 @@
 //! `headland demo`: built-in examples that need no file.
 
 use crate::arguments::DemoOptions;
+use crate::command::batch;
 use crate::command::coastdown::{self, Analysis};
 use crate::command::compare::{self, Comparison};
 use crate::command::run::simulate_all;
@@ -21,8 +22,10 @@ use serde::Serialize;
 use std::fmt::Write;
 
 /// Name and one line of each example.
-const EXAMPLES: [(&str, &str); 1] =
-    [("coastdown", "simulate ten coast-downs, add sensor noise, analyse, compare, report")];
+const EXAMPLES: [(&str, &str); 2] = [
+    ("coastdown", "simulate ten coast-downs, add sensor noise, analyse, compare, report"),
+    ("batch", "three drivelines at the plough, on the road and through a mixed day, compared"),
+];
 
 /// Where the truth lies in the scenario.
 const TRUTH: &str = "ground.soil.coefficient";
@@ -57,7 +60,17 @@ pub fn demo(registry: &Registry, options: &DemoOptions, seed: u64, say: Say) -> 
             names.join(", ")
         )));
     }
-    coast_down(registry, options, seed, say)
+    match options.name.as_str() {
+        "batch" => three_drivelines(registry, options, seed, say),
+        _ => coast_down(registry, options, seed, say),
+    }
+}
+
+fn three_drivelines(registry: &Registry, options: &DemoOptions, seed: u64, say: Say) -> Result<(), Failure> {
+    let mut output = Output::new(Some(&options.out), &options.out)?;
+    let path = embedded::write(&embedded::THREE_DRIVELINES, &mut output)?;
+    let done = batch::run(registry, headland_batch::Comparison::read(&path)?, (false, false), &mut output, seed, say)?;
+    batch::finish(&done, &output, say)
 }
 
 fn coast_down(registry: &Registry, options: &DemoOptions, seed: u64, say: Say) -> Result<(), Failure> {

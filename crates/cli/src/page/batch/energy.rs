@@ -10,6 +10,8 @@ use headland_scenario::Scenario;
 
 /// Accounts that take from shafts and wires.
 const TAKEN: [&str; 3] = ["power take off", "hydraulics", "auxiliary"];
+/// Accounts with a colour of their own; one more stands for the others.
+const COLOURS: usize = 6;
 /// Flows that one page draws.
 const FLOWS: usize = 12;
 
@@ -39,39 +41,56 @@ impl Content<'_> {
         Ok((drawn > 0).then_some(section))
     }
 
-    /// Accounts that can be seen in some configuration, so that each has one colour on the whole page.
+    /// The greatest accounts of all configurations, so that each has a colour of its own, the same on the whole page.
     fn names(&self) -> Vec<&str> {
         let cells = &self.summary.cells;
-        let mut names: Vec<&str> = Vec::new();
-        for (name, _) in cells.iter().flat_map(|cell| &cell.accounts) {
-            let apart = name.starts_with("from ") || name == "residual";
-            if !apart && !names.contains(&name.as_str()) {
-                names.push(name);
+        let mut names: Vec<(&str, f64)> = Vec::new();
+        for (name, energy) in cells.iter().flat_map(|cell| &cell.accounts).filter(|(name, _)| !apart(name)) {
+            match names.iter_mut().find(|(other, _)| other == name) {
+                Some((_, greatest)) => *greatest = greatest.max(energy.mean.abs()),
+                None => names.push((name, energy.mean.abs())),
             }
         }
-        // What would be thinner than a line is only told in the table of results.
-        let seen = |cell: &Cell, name: &str| {
-            let whole: f64 = cell.accounts.iter().map(|(_, energy)| energy.mean.abs()).fold(0.0, f64::max);
-            account(cell, name).is_some_and(|energy| energy.abs() > 5e-3 * whole)
-        };
-        names.retain(|name| cells.iter().any(|cell| seen(cell, name)));
+        let mut sizes: Vec<f64> = names.iter().map(|(_, size)| *size).collect();
+        sizes.sort_by(|one, other| other.total_cmp(one));
+        let least = sizes.get(COLOURS - 1).copied().unwrap_or(0.0);
         names
+            .into_iter()
+            .filter(|(_, size)| *size >= least && *size > 0.0)
+            .take(COLOURS)
+            .map(|(name, _)| name)
+            .collect()
     }
 
     /// The accounts of variants side by side, as stacked bars.
     fn accounts(&self, cells: &[&Cell], (cycle, ground): (usize, usize)) -> Plot {
         let names = self.names();
         let value = |cell: &Cell, name: &str| account(cell, name).unwrap_or(0.0);
-        let bars = names.iter().map(|name| Bar {
-            name: (*name).to_owned(),
-            values: cells.iter().map(|cell| value(cell, name)).collect(),
+        let mut bars: Vec<Bar> = names
+            .iter()
+            .map(|name| Bar {
+                name: (*name).to_owned(),
+                values: cells.iter().map(|cell| value(cell, name)).collect(),
+                error: None,
+            })
+            .collect();
+        let rest = |cell: &&Cell| -> f64 {
+            cell.accounts
+                .iter()
+                .filter(|(name, _)| !apart(name) && !names.contains(&name.as_str()))
+                .map(|(_, energy)| energy.mean)
+                .sum()
+        };
+        bars.push(Bar {
+            name: "everything else".to_owned(),
+            values: cells.iter().map(rest).collect(),
             error: None,
         });
         let title = format!("Energy by account: {}", self.place(cycle, ground));
         let bars = Bars {
             categories: cells.iter().map(|cell| self.variant(cell.variant).to_owned()).collect(),
             axis: Axis::new("energy", "J"),
-            bars: bars.collect(),
+            bars,
             stacked: true,
             horizontal: true,
         };
@@ -103,6 +122,11 @@ impl Content<'_> {
         let place = self.place(cell.cycle, cell.ground);
         Ok(staged_flow(&format!("{}: {place}", self.variant(cell.variant)), &stages))
     }
+}
+
+/// What stands on the other side of the ledger.
+fn apart(name: &str) -> bool {
+    name.starts_with("from ") || name == "residual"
 }
 
 /// Mean energy of an account [J].

@@ -8,7 +8,7 @@ mod tables;
 use crate::command::batch::counted;
 use crate::failure::Failure;
 use crate::page::short;
-use headland_batch::{Cell, Measure, Plan, Summary};
+use headland_batch::{Cell, Measure, Plan, Statistics, Summary};
 use headland_plugin::Registry;
 use headland_report::{Axis, Bar, Bars, Figure, Item, Plot, Report, Section};
 
@@ -165,24 +165,26 @@ impl Content<'_> {
     /// Bars of a measure, the spread of repetitions on them.
     fn bars(&self, index: usize) -> Plot {
         let places: Vec<_> = self.places().into_iter().take(IN_DETAIL).collect();
-        let bar = |variant: usize| {
-            let all: Vec<_> = places
+        let all = |variant: usize| -> Vec<Statistics> {
+            places
                 .iter()
                 .map(|place| self.cell(variant, *place).map(|cell| cell.measures[index]).unwrap_or_default())
-                .collect();
-            let error = all.iter().any(|one| one.count > 1 && one.deviation() > 0.0).then(|| {
-                let end = |sign: f64| all.iter().map(|one| one.mean + sign * one.deviation()).collect();
-                (end(-1.0), end(1.0))
-            });
+                .collect()
+        };
+        let variants = 0..self.plan.comparison.variants.len();
+        let spread = variants.clone().any(|variant| all(variant).iter().any(|one| one.deviation() > 0.0));
+        let bar = |variant: usize| {
+            let all = all(variant);
+            let end = |sign: f64| all.iter().map(|one| one.mean + sign * one.deviation()).collect();
             Bar {
                 name: self.variant(variant).to_owned(),
                 values: all.iter().map(|one| one.mean).collect(),
-                error,
+                error: spread.then(|| (end(-1.0), end(1.0))),
             }
         };
         let axis = self.axis(index);
-        let bars: Vec<Bar> = (0..self.plan.comparison.variants.len()).map(bar).collect();
-        let words = if bars.iter().any(|bar| bar.error.is_some()) {
+        let bars: Vec<Bar> = variants.map(bar).collect();
+        let words = if spread {
             "Bars are means of all runs of a configuration; the marks on them are one standard deviation."
         } else {
             ""
@@ -203,8 +205,8 @@ fn varies(values: &[f64]) -> bool {
 
 /// `−5.4 %`
 fn percent(share: f64) -> String {
-    let value = short(100.0 * (share * 1000.0).round() / 1000.0);
-    format!("{}{value} %", if share > 0.0 { "+" } else { "" })
+    let share = (share * 1000.0).round() / 1000.0;
+    format!("{}{} %", if share > 0.0 { "+" } else { "" }, short(100.0 * share))
 }
 
 fn capital(text: &str) -> String {

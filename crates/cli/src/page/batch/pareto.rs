@@ -1,8 +1,11 @@
 //! Configurations by two measures at once, and those that no other beats in both.
 
 use super::{Content, IN_DETAIL, asked, varies};
-use headland_batch::Choice;
+use headland_batch::{Choice, Statistics};
 use headland_report::{Cloud, Plot, Scatter, Section};
+
+/// Configurations by which axes are chosen.
+const SAMPLE: usize = 200;
 
 impl Content<'_> {
     /// Configurations to choose from: a parameter that is varied alone asks a question and offers no choice.
@@ -23,8 +26,19 @@ impl Content<'_> {
             self.summary.present().into_iter().filter(|index| !wanted.contains(index)).collect::<Vec<_>>(),
         );
         let choices: Vec<&Choice> = self.choices();
-        let column =
-            |index: usize| -> Vec<f64> { choices.iter().map(|choice| choice.measures[index]).collect() };
+        // Each against the mean of its place: a long cycle is no choice against a short one.
+        let column = |index: usize| -> Vec<f64> {
+            let scaled = |choice: &&Choice| {
+                let place = |choice: &Choice| (choice.spec.cycle, choice.spec.ground);
+                let mut here = Statistics::default();
+                for other in choices.iter().filter(|other| place(other) == place(choice)) {
+                    here.add(other.measures[index]);
+                }
+                choice.measures[index] / here.mean
+            };
+            // A sample says as much of a correlation as all of them.
+            choices.iter().step_by(choices.len().div_ceil(SAMPLE).max(1)).map(scaled).collect()
+        };
         wanted.retain(|index| better(index).is_some() && varies(&column(*index)));
         let x = *wanted.first()?;
         // Carbon dioxide against fuel is a straight line and no choice.

@@ -32,7 +32,7 @@ impl Content<'_> {
             for variant in 0..self.plan.comparison.variants.len() {
                 let Some(cell) = self.cell(variant, (cycle, ground)) else { continue };
                 let mut row = vec![Cell::from(self.variant(variant)), Cell::from(self.place(cycle, ground))];
-                row.extend(columns.iter().map(|index| number(&cell.measures[*index])));
+                row.extend(columns.iter().map(|index| Cell::Number(cell.measures[*index].mean)));
                 row.push(Cell::Number(cell.finished as f64));
                 rows.push(row);
             }
@@ -40,7 +40,7 @@ impl Content<'_> {
         let mut heads = vec![Axis::new("variant", ""), Axis::new("cycle", "")];
         heads.extend(columns.iter().map(|index| self.axis(*index)));
         heads.push(Axis::new("runs", ""));
-        Table { title: "Results: mean ± one standard deviation".to_owned(), columns: heads, rows }
+        Table { title: "Results, means of the runs".to_owned(), columns: heads, rows }
     }
 
     /// Differences to the baseline in per cent, paired.
@@ -79,9 +79,9 @@ impl Content<'_> {
                 "Fuel and what follows from it are told at the charge that the run began with. What the store gave is \
                  charged by the engine with an efficiency of {}, what it gained replaces work of the engine with {}, both \
                  at the engine's mean consumption in the same run: m + (ΔE / η) (m / W). This is the correction of \
-                 ISO 23274-1 and SAE J1711 with a stated efficiency in the place of their tolerance. The line through \
-                 runs that end at different charges, fuel over energy of the store, is an independent value where there \
-                 are such runs.",
+                 ISO 23274-1 and SAE J1711 with a stated efficiency in the place of their tolerance. Where the charge at \
+                 the start is moved and nothing else, a line through those runs, fuel over energy of the store, gives an \
+                 independent value.",
                 charge.charging_efficiency, charge.discharging_efficiency
             ),
             None => "The comparison does not say how a change of charge is made up for (`charge`), so the fuel of a run \
@@ -90,31 +90,34 @@ impl Content<'_> {
         };
         let fuel = self.summary.measures.iter().position(|measure| *measure == Measure::Fuel)?;
         let density = self.plan.comparison.accounting.fuel.map(|fuel| fuel.density_kg_m3);
+        let lines = self.summary.cells.iter().any(|cell| cell.fuel_over_store.fit().is_some());
         let rows = self.summary.cells.iter().filter(charged).map(|cell| {
-            let line = cell.fuel_over_store.fit();
-            let at_zero = line.map_or(f64::NAN, |(at_zero, _, _)| {
-                density.map_or(at_zero, |density| 1e3 * at_zero / density)
-            });
             let mut change = cell.charge;
             change.scale(100.0);
-            vec![
+            let mut row = vec![
                 Cell::from(self.variant(cell.variant)),
                 Cell::from(self.place(cell.cycle, cell.ground)),
                 number(&change),
                 number(&cell.measures[fuel]),
-                Cell::Number(at_zero),
-                Cell::Number(line.map_or(f64::NAN, |(_, _, share)| share)),
-            ]
+            ];
+            if lines {
+                let line = cell.fuel_over_store.fit();
+                let litres = |kg: f64| density.map_or(kg, |density| 1e3 * kg / density);
+                row.push(Cell::Number(line.map_or(f64::NAN, |(at_zero, _, _)| litres(at_zero))));
+                row.push(Cell::Number(line.map_or(f64::NAN, |(_, _, share)| share)));
+            }
+            row
         });
         let axis = self.axis(fuel);
-        let columns = vec![
+        let mut columns = vec![
             Axis::new("variant", ""),
             Axis::new("cycle", ""),
             Axis::new("change of charge", "%"),
             Axis::new("fuel at the same charge", axis.unit.clone()),
-            Axis::new("by the line", axis.unit),
-            Axis::new("R² of the line", ""),
         ];
+        if lines {
+            columns.extend([Axis::new("by the line", axis.unit), Axis::new("R² of the line", "")]);
+        }
         let table = Table { title: "Charge".to_owned(), columns, rows: rows.collect() };
         Some(Section::new("State of charge").words(words).with(table))
     }

@@ -36,7 +36,7 @@ fn seconds(runs: u32, threads: usize) -> f64 {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let settings = Settings { traces: false, stop: &|| false, progress: &|_| {} };
     let begin = Instant::now();
-    pool.install(|| execute(&plan, &registry, &mut journal, &settings)).unwrap();
+    pool.install(|| execute(&plan, &registry, &mut journal, &settings).unwrap());
     let seconds = begin.elapsed().as_secs_f64();
     assert_eq!(journal.finished(), u64::from(runs));
     table::write(&plan, &mut journal, &folder.path().join("results.parquet")).unwrap();
@@ -47,7 +47,8 @@ fn seconds(runs: u32, threads: usize) -> f64 {
 fn memory_mb() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-    line.and_then(|line| line.trim().trim_end_matches("kB").trim().parse().ok()).map_or(f64::NAN, |kb: f64| kb / 1024.0)
+    line.and_then(|line| line.trim().trim_end_matches("kB").trim().parse().ok())
+        .map_or(f64::NAN, |kb: f64| kb / 1024.0)
 }
 
 fn main() {
@@ -63,5 +64,9 @@ fn main() {
         ratios.push(one / two);
     }
     ratios.sort_by(f64::total_cmp);
-    println!("batch/ratio_two_to_one          {:>8.3} (median of {})", ratios[ratios.len() / 2], ratios.len());
+    println!(
+        "batch/ratio_two_to_one          {:>8.3} (median of {})",
+        ratios[ratios.len() / 2],
+        ratios.len()
+    );
 }

@@ -69,7 +69,14 @@ pub fn demo(registry: &Registry, options: &DemoOptions, seed: u64, say: Say) -> 
 fn three_drivelines(registry: &Registry, options: &DemoOptions, seed: u64, say: Say) -> Result<(), Failure> {
     let mut output = Output::new(Some(&options.out), &options.out)?;
     let path = embedded::write(&embedded::THREE_DRIVELINES, &mut output)?;
-    let done = batch::run(registry, headland_batch::Comparison::read(&path)?, (false, false), &mut output, seed, say)?;
+    let done = batch::run(
+        registry,
+        headland_batch::Comparison::read(&path)?,
+        (false, false),
+        &mut output,
+        seed,
+        say,
+    )?;
     batch::finish(&done, &output, say)
 }
 

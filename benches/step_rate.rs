@@ -16,7 +16,9 @@ const ROUNDS: usize = 300;
 
 fn main() {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-    let named = std::env::args().skip(1).find(|argument| argument.ends_with(".ron"));
+    let named = std::env::args()
+        .skip(1)
+        .find(|argument| Path::new(argument).extension().is_some_and(|end| end == "ron"));
     let path = named.map_or_else(|| scenarios.join("over_the_ridge.ron"), Into::into);
     let registry = headland_stock::registry();
     let scenario = Scenario::read(&path, &registry).unwrap();

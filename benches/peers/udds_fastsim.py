@@ -156,11 +156,14 @@ def main():
         row("work that drives, at the wheels", theirs[0] / 1e3, mine[0] / 1e3, "kJ", f"{100 * (mine[0] / theirs[0] - 1):+.2f} %"),
         row("work that slows down, at the wheels", theirs[1] / 1e3, mine[1] / 1e3, "kJ", f"{100 * (mine[1] / theirs[1] - 1):+.2f} %"),
         row("work in sum", sum(theirs) / 1e3, sum(mine) / 1e3, "kJ", f"{100 * (sum(mine) / sum(theirs) - 1):+.2f} %"),
-        row("steps per second, one thread", rates[0], rates[1], "1/s", f"{rates[1] / rates[0]:.0f} times"),
+        *([row("steps per second, one thread", rates[0], rates[1], "1/s", f"{rates[1] / rates[0]:.0f} times")] if wanted.step_rate else []),
         "",
         f"Headland misses the speeds of the cycle by at most {miss:.1e} m/s; its work is sampled each {FINE_STEP_S} s, since powers jump at "
-        "the corners of the cycle. Steps per second: both with steps of 1 s, the simulation alone, the best of many; FASTSim keeps no "
-        "history, Headland every channel of every step. FASTSim solves for a speed that it can reach, Headland by four evaluations a step.",
+        "the corners of the cycle."
+        + (
+            " Steps per second: both with steps of 1 s, the simulation alone, the best of many; FASTSim keeps no history, Headland every "
+            "channel of every step." if wanted.step_rate else ""
+        ),
         "",
     ]
     print("\n".join(lines))

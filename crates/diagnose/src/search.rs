@@ -87,6 +87,8 @@ const MOST_CAUSES: usize = 3;
 const BEAM: usize = 6;
 /// Each cause more makes a set less likely from the start: odds of one to twenty.
 const PER_CAUSE: f64 = 3.0;
+/// A function of time is shown by no other run: it takes so much more.
+const NO_OTHER_RUN: f64 = 20.0;
 /// A growth of ln p within this of the best one does not tell the two apart: odds of one to twenty.
 const TOLERANCE: f64 = 3.0;
 /// No growth below this counts, whatever chance can do.
@@ -128,7 +130,10 @@ pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]
                     causes: judged.iter().map(|one| one.told(stand.score)).collect(),
                 });
             }
-            let able = judged.into_iter().filter(|one| one.stand.score - stand.score >= needed);
+            let able = judged.into_iter().filter(|one| {
+                let timed = one.stand.parts.last().is_some_and(|part| state.timed(part));
+                one.stand.score - stand.score >= needed + if timed { NO_OTHER_RUN } else { 0.0 }
+            });
             grown.extend(able.map(|one| one.stand).filter(|stand| state.sensible(stand)).take(BEAM));
         }
         grown.sort_by(|one, other| other.score.total_cmp(&one.score));
@@ -265,6 +270,11 @@ impl State<'_> {
             out.push(parts.remove(worst).trial.cause);
             best = self.settle(&parts, &best.noises)?;
         }
+    }
+
+    /// Whether a part is a function of time.
+    fn timed(&self, part: &Part) -> bool {
+        part.spread.is_some() && self.cause(&part.trial).form == Form::OverTime
     }
 
     /// Whether any two fitted runs drove the same path.

@@ -43,6 +43,7 @@ mod state;
 mod trial;
 mod unlisted;
 mod voltage;
+mod widths;
 mod words;
 
 pub use balance::Kind;
@@ -89,7 +90,7 @@ pub fn diagnose(
     let events = spells(&case, &mut look, &sound, &braked)?;
     let Look { system, mut pool, found } = look;
     let found = unlisted::unlisted(&mut case, &system, &mut pool, found)?;
-    let mut refined = refine::refine(&case, &system, &pool, &found)?;
+    let mut refined = refine::refine(&case, &system, &mut pool, &found)?;
     refine::spells(&case, &system, &events, &mut refined);
     let withheld = contradiction::withhold(&case, &mut refined);
     let proof = prove::prove(&case, &system, &refined)?;

@@ -8,6 +8,7 @@ use crate::recorded::Recorded;
 use crate::said::{Said, said};
 use crate::search::{Accepted, Found};
 use crate::trial::{Pool, Trial, for_run};
+use crate::widths::{Widths, widths};
 use crate::{Case, DiagnoseError, System};
 use headland_calibrate::fit::{Estimate, Fit, Parameter, Residuals, fit};
 use headland_scenario::Scenario;
@@ -88,9 +89,16 @@ impl Cured {
 }
 
 /// Values for everything that was accepted.
-pub fn refine(case: &Case, system: &System, pool: &Pool, found: &Found) -> Result<Refined, DiagnoseError> {
+pub fn refine(
+    case: &Case,
+    system: &System,
+    pool: &mut Pool,
+    found: &Found,
+) -> Result<Refined, DiagnoseError> {
     case.step("fitting")?;
-    let mut refined = linear(case, pool, found);
+    let widths = widths(case, system, pool, found)?;
+    let pool: &Pool = pool;
+    let mut refined = linear(case, pool, found, &widths);
     let physics: Vec<usize> = (0..refined.causes.len())
         .filter(|place| refined.causes[*place].cause.form == Form::Parameters)
         .collect();
@@ -139,7 +147,7 @@ fn widest(value: f64, one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
 }
 
 /// The linear estimate.
-fn linear(case: &Case, pool: &Pool, found: &Found) -> Refined {
+fn linear(case: &Case, pool: &Pool, found: &Found, widths: &[Widths]) -> Refined {
     let interval = |position: usize, value: f64| {
         let half = HALF_95 * found.estimate.covariance[(position, position)].sqrt();
         [value - half, value + half]
@@ -150,9 +158,9 @@ fn linear(case: &Case, pool: &Pool, found: &Found) -> Refined {
         Free { name: one.name.clone(), prior: one.value, value, ci95: interval(position, value) }
     });
     let mut causes: Vec<Cured> = Vec::new();
-    for accepted in &found.accepted {
+    for (accepted, widths) in found.accepted.iter().zip(widths) {
         let cause = case.causes[accepted.trial.cause].clone();
-        let values = if cause.is_function() { Vec::new() } else { started(case, accepted, found) };
+        let values = if cause.is_function() { Vec::new() } else { started(case, accepted, found, widths) };
         causes.push(Cured { cause, accepted: accepted.clone(), values, events: Vec::new() });
     }
     for correction in &case.corrections {
@@ -271,21 +279,22 @@ fn nonlinear(
     Ok((fit(&parameters, evaluate)?, slots))
 }
 
-/// The linear estimate of a cause's parameters.
-fn started(case: &Case, accepted: &Accepted, found: &Found) -> Vec<(f64, [f64; 2])> {
+/// The linear estimate of a cause's parameters, as wide as its shape leaves it.
+fn started(case: &Case, accepted: &Accepted, found: &Found, widths: &Widths) -> Vec<(f64, [f64; 2])> {
     let cause = &case.causes[accepted.trial.cause];
     let mut shape = accepted.trial.shape.iter();
     let one = |(index, term): (usize, &Term)| {
         if !term.linear {
             let value = shape.next().copied().unwrap_or(1.0);
-            return (value, [value; 2]);
+            let half = HALF_95 * widths[index];
+            return (value, [value - half, value + half]);
         }
         let place = accepted.trial.terms.iter().position(|own| *own == index);
         let column = place.map(|place| accepted.trial.columns[place]);
         let position = column.and_then(|column| found.used.iter().position(|used| *used == column));
         let Some(position) = position else { return (0.0, [0.0; 2]) };
         let value = found.estimate.beta[position];
-        let half = HALF_95 * found.estimate.covariance[(position, position)].sqrt();
+        let half = HALF_95 * found.estimate.covariance[(position, position)].sqrt().hypot(widths[index]);
         (value, [value - half, value + half])
     };
     cause.terms.iter().enumerate().map(one).collect()

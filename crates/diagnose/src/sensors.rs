@@ -69,7 +69,8 @@ pub fn small_faults(case: &Case, system: &System) -> Result<Vec<Small>, Diagnose
 ///
 /// The acceleration is the one that force and model make: the recorded one would bring its noise into the column.
 pub fn fault(case: &Case, system: &System, id: &str, step: f64) -> Result<Column, DiagnoseError> {
-    let corrected = corrected(&case.runs, id, step)?;
+    // Tried on the speed, whichever way: what moves the force would bring the noise of its sensor into the column.
+    let corrected = moved(&case.runs, id, step, false)?;
     let said = case.said_of(&corrected, case.study.scenario(), &case.study.priors())?;
     Ok(system.column(|kind| {
         (0..case.runs.len())
@@ -126,8 +127,14 @@ fn motion(
         .collect()
 }
 
+/// Whether a latency is one of the force: a speed does not come early, so what drives comes late. Where force is made of a
+/// torque, the whole bus is late with it, and the speed is moved against the bus.
+pub fn late_force(run: &Recorded, id: &str, value: f64) -> bool {
+    id == "latency" && value < 0.0 && run.measured.trace.get("tractive_force_n").is_some()
+}
+
 /// The channel that a fault is corrected in, and its samples without it.
-fn without(run: &Recorded, id: &str, value: f64) -> Option<(&'static str, Vec<f64>)> {
+fn without(run: &Recorded, id: &str, value: f64, force: bool) -> Option<(&'static str, Vec<f64>)> {
     let trace = &run.measured.trace;
     let time_s = trace.time_s();
     let each = |name: &'static str, change: &dyn Fn(usize, f64) -> f64| {
@@ -136,6 +143,10 @@ fn without(run: &Recorded, id: &str, value: f64) -> Option<(&'static str, Vec<f6
     };
     let scaled = |_: usize, sample: f64| sample / (1.0 + value);
     match id {
+        "latency" if force && late_force(run, id, value) => {
+            let force = trace.get("tractive_force_n")?;
+            each("tractive_force_n", &|index, _| interpolate(time_s, force, time_s[index] - value))
+        }
         "latency" => {
             let speed = trace.get("speed_m_s")?;
             each("speed_m_s", &|index, _| interpolate(time_s, speed, time_s[index] + value))
@@ -155,18 +166,27 @@ fn without(run: &Recorded, id: &str, value: f64) -> Option<(&'static str, Vec<f6
 
 /// The runs as they would have been recorded without a fault of this size.
 pub fn corrected(runs: &[Recorded], id: &str, value: f64) -> Result<Vec<Recorded>, DiagnoseError> {
+    moved(runs, id, value, true)
+}
+
+/// The same; a latency that is one of the force is taken from the force, or else from the speed, the other way.
+fn moved(runs: &[Recorded], id: &str, value: f64, force: bool) -> Result<Vec<Recorded>, DiagnoseError> {
     let one = |run: &Recorded| {
         let mut changed = run.clone();
-        if let Some((name, samples)) = without(run, id, value) {
+        if let Some((name, samples)) = without(run, id, value, force) {
             changed.measured.trace = with_channel(&run.measured.trace, name, samples)?;
         }
         if id == "latency" {
             // What a late sensor would have said after the end nobody knows.
             let time_s = run.measured.trace.time_s();
             let (first, last) = (time_s[0], time_s[time_s.len() - 1]);
+            let ahead_s = if force && late_force(run, id, value) { -value } else { value };
             for (compared, time_s) in changed.measured.compared.iter_mut().zip(time_s) {
-                *compared &= (first..=last).contains(&(time_s + value));
+                *compared &= (first..=last).contains(&(time_s + ahead_s));
             }
+        }
+        if force && late_force(run, id, value) {
+            follow_force(&mut changed);
         }
         if id == "force_scale" {
             for sample in changed.force_n.iter_mut().flatten() {
@@ -184,6 +204,16 @@ pub fn corrected(runs: &[Recorded], id: &str, value: f64) -> Result<Vec<Recorded
         Ok(changed)
     };
     runs.iter().map(one).collect()
+}
+
+/// The force of a run from its channel, once that was changed; in neutral none drives.
+fn follow_force(run: &mut Recorded) {
+    let trace = &run.measured.trace;
+    let (Some(force), Some(own)) = (trace.get("tractive_force_n"), run.force_n.as_mut()) else { return };
+    let coasting = trace.get("coasting");
+    for (index, (own, force)) in own.iter_mut().zip(force).enumerate() {
+        *own = if coasting.is_some_and(|values| values[index] >= 0.5) { 0.0 } else { *force };
+    }
 }
 
 fn with_channel(trace: &Trace, name: &str, values: Vec<f64>) -> Result<Trace, DiagnoseError> {

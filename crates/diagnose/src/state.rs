@@ -96,12 +96,16 @@ impl<'a> State<'a> {
 
     /// Whether a set would have to be what it cannot be.
     pub fn impossible(&self, parts: &[Part], estimate: &Estimate) -> bool {
+        self.beyond(parts, &estimate.beta)
+    }
+
+    fn beyond(&self, parts: &[Part], beta: &DVector<f64>) -> bool {
         let mut position = self.pool.nuisance;
         for part in parts {
             let cause = self.cause(&part.trial);
             for term in &part.trial.terms {
                 let bounded = part.spread.is_none();
-                if bounded && cause.impossible(*term, estimate.beta[position]) {
+                if bounded && cause.impossible(*term, beta[position]) {
                     return true;
                 }
                 position += 1;
@@ -192,17 +196,23 @@ impl<'a> State<'a> {
         )
     }
 
-    /// ln p of the recordings with a set of causes at a noise, without what the choice costs; no function among them.
+    /// ln p of the recordings with a set of causes at a noise, without what the choice costs; none where it cannot be.
     pub fn likely(&self, parts: &[Part], noises: &Noises) -> Option<f64> {
+        let (score, beta) = self.weighed(parts, noises)?;
+        (!self.beyond(parts, &beta)).then_some(score)
+    }
+
+    /// ln p of the recordings with a set of causes at a noise, and the values of all columns in use.
+    pub fn weighed(&self, parts: &[Part], noises: &Noises) -> Option<(f64, DVector<f64>)> {
         let used = self.columns(parts);
         let columns: Vec<&Column> = used.iter().map(|column| &self.pool.columns[*column]).collect();
         let all_sd = self.sd();
         let sd: Vec<f64> = used.iter().map(|column| all_sd[*column]).collect();
         let places: Vec<usize> = (0..used.len()).collect();
         let whitened = Whitened::new(&self.system.chunks, &self.system.residual, &columns, noises)?;
-        let estimate = whitened.reduced(&self.system.chunks, self.fit).estimate(&places, &sd)?;
-        let possible = !self.impossible(parts, &estimate);
-        possible.then(|| estimate.log_evidence + self.heavy(&used, &estimate.beta))
+        let reduced = self.without_functions(&whitened, &self.profiles(parts), self.fit)?;
+        let estimate = reduced.estimate(&places, &sd)?;
+        Some((estimate.log_evidence + self.heavy(&used, &estimate.beta), estimate.beta))
     }
 
     /// Estimates a set of causes, and lets the noise follow.

@@ -94,7 +94,7 @@ pub fn report(
         diagnosis,
         scenarios: proof.scenarios.iter().map(|(_, text)| text.clone()).collect(),
         effects: effects(case, proof, &bands)?,
-        corrections: corrections(refined),
+        corrections: corrections(case, refined),
         residuals: residuals(case, system, found),
         shown: shown(case, system, Some(found), refined, proof)?,
     })

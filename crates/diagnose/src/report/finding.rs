@@ -9,6 +9,7 @@ use crate::locate::stretches;
 use crate::prove::Proof;
 use crate::refine::{Cured, HALF_95, Refined};
 use crate::search::Found;
+use crate::sensors::late_force;
 use crate::{Case, words};
 
 /// The findings, by their share of the mismatch.
@@ -24,6 +25,7 @@ pub fn findings(
     for (place, (cured, effect)) in refined.causes.iter().zip(&proof.effects).enumerate() {
         let balance = system.kinds[cured.accepted.balance];
         let share = share(case, system, found, (refined, proof), place);
+        let cured = &of_its_channel(case, cured);
         let parameters = parameters(cured);
         let rivals: Vec<RivalReport> = cured
             .accepted
@@ -45,7 +47,7 @@ pub fn findings(
             balance,
             sentence: words::sentence(cured, balance, &parameters, share, &case.causes),
             equation: cured.cause.equation_text(),
-            depends_on: cured.cause.channels(),
+            depends_on: channels(case, refined, place),
             stretches: if cured.events.is_empty() {
                 stretches(&case.runs, &effect.runs)
             } else {
@@ -60,6 +62,33 @@ pub fn findings(
     }
     findings.sort_by(|one, other| other.share_of_mismatch.total_cmp(&one.share_of_mismatch));
     findings
+}
+
+/// What a finding depends on: a latency on the channel that is late.
+fn channels(case: &Case, refined: &Refined, place: usize) -> Vec<String> {
+    let cured = &refined.causes[place];
+    match (cured.cause.id, cured.values.first()) {
+        ("latency", Some((value, _))) => vec![late(case, *value).to_owned()],
+        _ => cured.cause.channels(),
+    }
+}
+
+/// The channel that is late: speed, or what drives where speed would have to come early.
+pub fn late(case: &Case, latency_s: f64) -> &'static str {
+    let force = case.runs.iter().any(|run| late_force(run, "latency", latency_s));
+    if force { "tractive_force_n" } else { "speed_m_s" }
+}
+
+/// A cause told of the channel that it is a fault of: a speed that comes early is a force that comes late.
+fn of_its_channel(case: &Case, cured: &Cured) -> Cured {
+    let mut own = cured.clone();
+    if let ("latency", Some((value, ci))) = (own.cause.id, own.values.first_mut())
+        && late(case, *value) != "speed_m_s"
+    {
+        (*value, *ci) = (-*value, [-ci[1], -ci[0]]);
+        own.cause.words = "a force that arrives late";
+    }
+    own
 }
 
 /// A fault that a channel shows by itself.

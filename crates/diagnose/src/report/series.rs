@@ -2,6 +2,7 @@
 
 use super::LeftOver;
 use super::bands::Banded;
+use super::finding::late;
 use crate::prove::Proof;
 use crate::refine::Refined;
 use crate::search::Found;
@@ -34,9 +35,13 @@ pub fn effects(case: &Case, proof: &Proof, bands: &[Option<Banded>]) -> Result<V
 }
 
 /// Channel, latency [s], scale, bias.
-pub fn corrections(refined: &Refined) -> Vec<(String, f64, f64, f64)> {
+pub fn corrections(case: &Case, refined: &Refined) -> Vec<(String, f64, f64, f64)> {
     let correction = |(id, value): (&str, f64)| match id {
-        "latency" => Some(("speed_m_s".to_owned(), value, 1.0, 0.0)),
+        "latency" => {
+            let channel = late(case, value);
+            let latency_s = if channel == "speed_m_s" { value } else { -value };
+            Some((channel.to_owned(), latency_s, 1.0, 0.0))
+        }
         "speed_scale" => Some(("speed_m_s".to_owned(), 0.0, 1.0 + value, 0.0)),
         "force_scale" => Some(("tractive_force_n".to_owned(), 0.0, 1.0 + value, 0.0)),
         "accelerometer_bias" => Some(("specific_force_m_s2".to_owned(), 0.0, 1.0, value)),

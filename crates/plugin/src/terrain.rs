@@ -1,5 +1,6 @@
 //! The shape of the ground along the path.
 
+use crate::Surface;
 use std::fmt::Debug;
 
 /// A place on the path.
@@ -49,6 +50,11 @@ pub trait Terrain: Debug + Send + Sync {
     /// Where the next mark of this name stands beyond a position, both along the path [m]; `None` where there is none.
     fn next_mark_m(&self, name: &str, position_m: f64) -> Option<f64> {
         let _ = (name, position_m);
+        None
+    }
+
+    /// The ground beside the path; `None` where only the path itself is known.
+    fn surface(&self) -> Option<&dyn Surface> {
         None
     }
 }

@@ -119,10 +119,12 @@ fn families_of_plugins_never_see_each_other_not_even_in_tests() {
 }
 
 #[test]
-fn only_view_imports_rerun() {
+fn only_view_imports_rerun_and_only_body_rapier() {
     for (name, package) in crates() {
-        let imports = package["dependencies"].as_array().unwrap().iter().any(|one| one["name"] == "rerun");
-        assert_eq!(imports, name == "view", "`{name}`");
+        let imports =
+            |what: &str| package["dependencies"].as_array().unwrap().iter().any(|one| one["name"] == what);
+        assert_eq!(imports("rerun"), name == "view", "`{name}`");
+        assert_eq!(imports("rapier3d-f64"), name == "body", "`{name}`");
     }
 }
 

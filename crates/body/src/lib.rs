@@ -1,0 +1,1 @@
+//! The rigid-body fidelity: a chassis on wheels over a surface, integrated by rapier.

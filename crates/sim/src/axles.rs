@@ -88,13 +88,13 @@ impl Axles {
     }
 
     /// Load of an axle [N] where the ground carries `weight_n` and the forces turn it forward by `moment_n_m`.
-    pub(crate) fn load_n(&self, index: usize, weight_n: f64, moment_n_m: f64) -> f64 {
+    pub fn load_n(&self, index: usize, weight_n: f64, moment_n_m: f64) -> f64 {
         let (share, per_moment) = self.shares[index];
         share * weight_n + per_moment * moment_n_m
     }
 
     /// Wheels ahead of those of an axle in the same rut, driving forward; a vehicle that rolls back keeps the count.
-    pub(crate) fn earlier(&self, index: usize) -> u32 {
+    pub fn earlier(&self, index: usize) -> u32 {
         self.earlier[index]
     }
 }

@@ -242,7 +242,7 @@ impl Model {
 
     /// Force of the air, forward [N].
     #[inline(always)]
-    fn air_n(&self, situation: &Situation) -> f64 {
+    pub(crate) fn air_n(&self, situation: &Situation) -> f64 {
         let area_m2 = self.vehicle.resistance.drag_area_m2();
         situation.air.drag_n(area_m2, situation.speed_m_s, situation.place.heading_rad)
     }
@@ -275,7 +275,7 @@ impl Model {
 
     /// Where the vehicle is, and in what air.
     #[inline(always)]
-    fn situation(&self, point: Point, command: Command, given: &Given) -> Situation {
+    pub(crate) fn situation(&self, point: Point, command: Command, given: &Given) -> Situation {
         let position_m = given.reversed_from_m.map_or(point.position_m, |from_m| from_m - point.position_m);
         let mut place = self.terrain.at(position_m);
         if given.reversed_from_m.is_some() {
@@ -309,7 +309,7 @@ impl Model {
 
     /// What effects and tasks add up to; the mass of the situation grows by what they carry.
     #[inline(always)]
-    fn sums(
+    pub(crate) fn sums(
         &self,
         situation: &mut Situation,
         given: &Given,

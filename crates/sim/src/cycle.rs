@@ -1,6 +1,7 @@
 //! Driving a cycle of phases, one after the other.
 
 use crate::balance::{Command, Given, Instant};
+use crate::carriage::Carriage;
 use crate::ending::Ending;
 use crate::ledger::Ledger;
 use crate::plan::{Cycle, Driven, Phase, Setting};
@@ -19,7 +20,24 @@ const MOST_STEPS: usize = 10_000_000;
 /// # Errors
 /// [`TraceError`] where the steps do not make a trace, which would be a bug.
 pub fn simulate(model: &Model, cycle: &Cycle) -> Result<Outcome, TraceError> {
-    let mut run = Running::new(model, cycle);
+    drive(Running::new(model, cycle, None, 0.0), cycle)
+}
+
+/// Drives the model through the cycle on a carriage that moves it; a row of the trace is written every `record_s` [s], and
+/// at the end of each phase.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_on<'a>(
+    model: &'a Model,
+    carriage: Box<dyn Carriage + 'a>,
+    cycle: &'a Cycle,
+    record_s: f64,
+) -> Result<Outcome, TraceError> {
+    drive(Running::new(model, cycle, Some(carriage), record_s), cycle)
+}
+
+fn drive(mut run: Running, cycle: &Cycle) -> Result<Outcome, TraceError> {
     let mut end = End::Finished;
     for (index, phase) in cycle.phases.iter().enumerate() {
         if let Err(reason) = run.drive_one(index, phase) {
@@ -37,6 +55,8 @@ pub(crate) type Hopeless<'h> = &'h dyn Fn(&Machine, &Instant) -> Option<String>;
 pub(crate) struct Running<'a> {
     pub machine: Machine<'a>,
     recorder: Recorder,
+    /// Between two rows of the trace [s]; 0 for one each step.
+    record_s: f64,
     pub cycle: &'a Cycle,
     extent_m: Option<(f64, f64)>,
     pub target_m_s: f64,
@@ -47,18 +67,25 @@ pub(crate) struct Running<'a> {
 }
 
 impl<'a> Running<'a> {
-    fn new(model: &'a Model, cycle: &'a Cycle) -> Self {
+    fn new(
+        model: &'a Model,
+        cycle: &'a Cycle,
+        carriage: Option<Box<dyn Carriage + 'a>>,
+        record_s: f64,
+    ) -> Self {
         let Cycle { start, phases, .. } = cycle;
         let remembers =
             |phase: &Phase| matches!(phase, Phase::With { setting, .. } if setting.driver.is_some());
-        let machine = if phases.iter().any(remembers) {
-            Machine::with_driver(model, "driver_error_m", start.position_m, start.speed_m_s)
-        } else {
-            Machine::new(model, 0.0, start.position_m, start.speed_m_s)
+        let driver = phases.iter().any(remembers).then_some("driver_error_m");
+        let machine = match (carriage, driver) {
+            (Some(carriage), driver) => Machine::on(model, carriage, driver),
+            (None, Some(driver)) => Machine::with_driver(model, driver, start.position_m, start.speed_m_s),
+            (None, None) => Machine::new(model, 0.0, start.position_m, start.speed_m_s),
         };
         Self {
             recorder: Recorder::new(&machine),
             machine,
+            record_s,
             cycle,
             extent_m: model.terrain.extent_m(),
             target_m_s: start.speed_m_s,
@@ -140,11 +167,13 @@ impl<'a> Running<'a> {
             if !(instant.acceleration_m_s2.is_finite() && machine.speed_m_s().is_finite()) {
                 return Err("a force is not a finite number; look at the parameters of the models".to_owned());
             }
-            if self.recorder.last_time_s().is_none_or(|last| machine.time_s > last) {
+            let left_s = end_s - machine.time_s;
+            let over = left_s <= 0.0 || ending.left(&machine.moment()) <= 0.0;
+            let due_s = if over { 0.0 } else { ON_TIME * self.record_s };
+            if self.recorder.last_time_s().is_none_or(|last| machine.time_s > last + due_s) {
                 self.recorder.push(machine, &instant);
             }
-            let left_s = end_s - machine.time_s;
-            if left_s <= 0.0 || ending.left(&machine.moment()) <= 0.0 {
+            if over {
                 return Ok(machine.time_s >= ending.end_s || ending.left(&machine.moment()) <= 0.0);
             }
             if let Some(reason) = machine.exhausted(&instant).or_else(|| hopeless(machine, &instant)) {
@@ -179,16 +208,22 @@ impl<'a> Running<'a> {
             let instant = self.machine.instant(&coast);
             self.recorder.push(&self.machine, &instant);
         }
-        let ledger = Ledger::close(
+        let mut ledger = Ledger::close(
             self.machine.model.driveline.source(),
             self.machine.kinetic_gain_j(),
             &self.machine.slots,
             self.machine.energies_j(),
         );
+        if let Some(carriage) = &self.machine.carriage {
+            ledger.add(carriage.accounts());
+        }
         let steps = self.machine.steps;
         Ok(Outcome { trace: self.recorder.finish()?, ledger, end, steps, phases: self.driven })
     }
 }
+
+/// A row is due this early, as a part of the time between two: so many roundings of steps are no step more.
+const ON_TIME: f64 = 1.0 - 1e-6;
 
 /// A path that is driven to its very end is left by the rounding of a located end [m].
 const LOCATED_M: f64 = 1e-6;

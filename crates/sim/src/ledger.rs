@@ -40,6 +40,14 @@ impl Ledger {
         if turnover > 0.0 { self.residual_j.abs() / turnover } else { 0.0 }
     }
 
+    /// Books what a carriage took besides.
+    pub(crate) fn add(&mut self, accounts: Vec<(&'static str, f64)>) {
+        for (name, energy_j) in accounts.into_iter().filter(|(_, energy_j)| *energy_j != 0.0) {
+            self.residual_j -= energy_j;
+            self.sinks.push(Entry { name: name.to_owned(), energy_j });
+        }
+    }
+
     pub(crate) fn close(source_name: &str, kinetic_j: f64, slots: &Slots, energies: &[f64]) -> Self {
         let mut sinks: Vec<Entry> = Vec::new();
         for (name, energy_j) in slots.names.iter().zip(energies).skip(1) {

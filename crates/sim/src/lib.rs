@@ -8,6 +8,8 @@
 mod axle_tests;
 mod axles;
 mod balance;
+mod borne;
+mod carriage;
 mod cycle;
 #[cfg(test)]
 mod cycle_tests;
@@ -31,7 +33,8 @@ mod traction;
 mod wheels;
 
 pub use axles::{Axle, Axles};
-pub use cycle::simulate;
+pub use carriage::{AxleMotion, Carriage, Motion, Push, Stepped};
+pub use cycle::{simulate, simulate_on};
 pub use ledger::{Entry, Ledger};
 pub use model::{Model, Named, Resistance, Vehicle};
 pub use plan::{Cycle, Driven, EngineSpeed, Guard, Phase, Pi, Setting, Start, Until};

@@ -10,6 +10,8 @@ use headland_trace::{Origin, Trace, TraceError};
 pub(crate) struct Recorder {
     time_s: Vec<f64>,
     columns: Vec<Column>,
+    /// What a carriage writes.
+    row: Vec<f64>,
 }
 
 /// A channel that takes no memory as long as nothing is in it.
@@ -79,6 +81,9 @@ impl Recorder {
                 names.extend(AXLE_CHANNELS.map(|what| format!("axle_{axle}_{what}")));
             }
         }
+        if let Some(carriage) = &machine.carriage {
+            names.extend(carriage.channels());
+        }
         let first_effect = names.len();
         for effect in &machine.model.effects {
             for unit in EFFECT_UNITS {
@@ -94,7 +99,7 @@ impl Recorder {
             idle: Some(f64::NAN),
             values: Vec::new(),
         };
-        Self { time_s: Vec::new(), columns: names.into_iter().enumerate().map(column).collect() }
+        Self { time_s: Vec::new(), columns: names.into_iter().enumerate().map(column).collect(), row: Vec::new() }
     }
 
     pub fn last_time_s(&self) -> Option<f64> {
@@ -107,7 +112,7 @@ impl Recorder {
             instant.situation.position_m,
             machine.speed_m_s(),
             instant.wheel_speed_m_s,
-            instant.acceleration_m_s2,
+            machine.acceleration_m_s2(instant),
             instant.effective_mass_kg,
             place.elevation_m,
             place.grade(),
@@ -149,6 +154,13 @@ impl Recorder {
             });
             for (value, column) in slip.chain(axles).zip(columns.by_ref()) {
                 column.push(value, rows);
+            }
+        }
+        if let Some(carriage) = &machine.carriage {
+            self.row.clear();
+            carriage.write(&mut self.row);
+            for (value, column) in self.row.iter().zip(columns.by_ref()) {
+                column.push(*value, rows);
             }
         }
         let effects = machine.effect_actions().iter().flat_map(|action| effect_row(instant, action));

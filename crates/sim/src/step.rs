@@ -6,6 +6,8 @@
 
 use crate::Model;
 use crate::balance::{Command, Given, Instant, Point, Scratch};
+use crate::borne::Borne;
+use crate::carriage::Carriage;
 use crate::ledger::{MASS_CHANGE, Slots};
 use crate::model::Layout;
 use crate::wheels::{AxleState, WheelScratch};
@@ -33,9 +35,9 @@ impl<F: Fn(&Moment) -> (Command, Given)> Control for F {
     }
 }
 
-const POSITION: usize = 0;
-const SPEED: usize = 1;
-const FIRST_STATE: usize = 2;
+pub(crate) const POSITION: usize = 0;
+pub(crate) const SPEED: usize = 1;
+pub(crate) const FIRST_STATE: usize = 2;
 
 /// A model in motion.
 #[derive(Debug)]
@@ -45,13 +47,17 @@ pub(crate) struct Machine<'a> {
     pub slots: Slots,
     pub time_s: f64,
     pub steps: usize,
+    /// What moves it; `None` where the longitudinal balance does.
+    pub carriage: Option<Box<dyn Carriage + 'a>>,
+    /// What the models push the carriage with.
+    pub(crate) borne: Borne,
     /// Position, speed, states, energies.
-    y: Vec<f64>,
-    scratch: Scratch,
+    pub(crate) y: Vec<f64>,
+    pub(crate) scratch: Scratch,
     start: Vec<f64>,
     stage: Vec<f64>,
-    slopes: [Vec<f64>; 4],
-    first_kinetic_j: Option<f64>,
+    pub(crate) slopes: [Vec<f64>; 4],
+    pub(crate) first_kinetic_j: Option<f64>,
     mass_kg: f64,
     /// Effective mass at the second, third and fourth stage of the last step [kg].
     stage_masses_kg: [f64; 3],
@@ -89,6 +95,8 @@ impl<'a> Machine<'a> {
             slots,
             time_s,
             steps: 0,
+            carriage: None,
+            borne: Borne::default(),
             scratch,
             start: zero.clone(),
             stage: zero.clone(),
@@ -127,6 +135,12 @@ impl<'a> Machine<'a> {
         self.y[FIRST_STATE + index] = value;
     }
 
+    /// Acceleration at an instant: that of the forces, or that of the last step where a carriage makes it [m/s²].
+    pub fn acceleration_m_s2(&self, instant: &Instant) -> f64 {
+        let of_step = self.carriage.as_ref().and_then(|carriage| carriage.motion().acceleration_m_s2);
+        of_step.unwrap_or(instant.acceleration_m_s2)
+    }
+
     /// The moment at which the machine stands.
     pub fn moment(&self) -> Moment<'_> {
         Moment {
@@ -154,6 +168,9 @@ impl<'a> Machine<'a> {
 
     /// Why its wheels cannot go on.
     pub fn stuck(&self) -> Option<String> {
+        if let Some(carriage) = &self.carriage {
+            return carriage.trouble();
+        }
         let limit = self.model.axles.as_ref()?.slip_limit;
         self.scratch.wheels.stuck.map(|stuck| stuck.in_words(limit))
     }
@@ -198,6 +215,9 @@ impl<'a> Machine<'a> {
 
     /// The balance where the machine stands.
     fn as_decided(&mut self, control: &impl Control) -> Instant {
+        if self.carriage.is_some() {
+            return self.borne_instant(control);
+        }
         let y = std::mem::take(&mut self.y);
         let mut slope = std::mem::take(&mut self.slopes[0]);
         let direction = sign(y[SPEED]);
@@ -219,7 +239,11 @@ impl<'a> Machine<'a> {
 
     /// Gain of kinetic energy since the first instant [J].
     pub fn kinetic_gain_j(&self) -> f64 {
-        self.first_kinetic_j.map_or(0.0, |first| self.kinetic_j(self.mass_kg) - first)
+        let now_j = match &self.carriage {
+            Some(carriage) => carriage.kinetic_j(),
+            None => self.kinetic_j(self.mass_kg),
+        };
+        self.first_kinetic_j.map_or(0.0, |first| now_j - first)
     }
 
     #[allow(clippy::inline_always, reason = "see the balance")]
@@ -268,6 +292,9 @@ impl<'a> Machine<'a> {
         event: impl Fn(&Moment) -> f64,
     ) -> f64 {
         self.steps += 1;
+        if self.carriage.is_some() {
+            return self.borne_step(step_s, &event);
+        }
         std::mem::swap(&mut self.start, &mut self.y);
         let from_rest = self.start[SPEED] == 0.0;
         let direction = if from_rest { sign(first.acceleration_m_s2) } else { sign(self.start[SPEED]) };
@@ -434,6 +461,6 @@ impl<'a> Machine<'a> {
 /// Below this a speed is the rounding of a located stop.
 const SPEED_AT_REST_M_S: f64 = 1e-12;
 
-fn sign(value: f64) -> f64 {
+pub(crate) fn sign(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value.signum() }
 }

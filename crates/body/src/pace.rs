@@ -1,0 +1,81 @@
+//! The longest step that is stable.
+//!
+//! dt² k / m + 2 dt c / m < 4          Euler's half-implicit rule on m x″ + c x′ + k x = 0
+//!
+//! Source: Jury's conditions on the two eigenvalues of one step. Looked at are bounce, roll and pitch on the tyres, and the
+//! turning of each shaft against its tyres.
+
+use crate::BodyError;
+use crate::spin::Spin;
+use crate::wheel::Wheel;
+use headland_plugin::{Place, Soil, WheelContact};
+
+/// A step is refused beyond this part of what is stable: nearer to it, swings are not resolved.
+const SAFE: f64 = 0.5;
+
+/// Inertias that the tyres carry: mass [kg], roll and pitch [kg m²].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Carried {
+    pub mass_kg: f64,
+    pub roll_kg_m2: f64,
+    pub pitch_kg_m2: f64,
+}
+
+/// Refuses a step that is too long for wheels that stand with their static loads.
+pub(crate) fn check(
+    wheels: &[Wheel],
+    spin: &Spin,
+    soil: &dyn Soil,
+    carried: Carried,
+    step_s: f64,
+) -> Result<(), BodyError> {
+    let sum = |weigh: &dyn Fn(&Wheel) -> f64| {
+        wheels.iter().fold((0.0, 0.0), |(k, c), wheel| {
+            (k + weigh(wheel) * wheel.stiffness_n_m, c + weigh(wheel) * wheel.damping_n_s_m)
+        })
+    };
+    let per = |(k, c): (f64, f64), inertia: f64| (k / inertia, c / inertia);
+    let mut fastest = vec![
+        ("the bounce on the tyres", per(sum(&|_| 1.0), carried.mass_kg)),
+        ("the roll on the tyres", per(sum(&|wheel| wheel.arm.y * wheel.arm.y), carried.roll_kg_m2)),
+        ("the pitch on the tyres", per(sum(&|wheel| wheel.arm.x * wheel.arm.x), carried.pitch_kg_m2)),
+    ];
+    for (mass_kg, turning) in spin.shafts() {
+        let (k, c) = turning.iter().fold((0.0, 0.0), |(k, c), (index, lead)| {
+            let wheel = &wheels[*index];
+            let own = lead * lead * gripping_n(wheel, soil) / wheel.body.relaxation_length_m;
+            (k + own, c + own * wheel.damping_n_s_m / wheel.stiffness_n_m)
+        });
+        fastest.push(("a wheel that turns against its tyre", per((k, c), mass_kg)));
+    }
+    let longest = |(k, c): (f64, f64)| SAFE * 4.0 / (c + (c * c + 4.0 * k).sqrt());
+    let (what, longest_s) = fastest
+        .into_iter()
+        .map(|(what, swing)| (what, longest(swing)))
+        .fold(("nothing", f64::INFINITY), |least, one| if one.1 < least.1 { one } else { least });
+    if step_s > longest_s {
+        return Err(BodyError::Step { found_s: step_s, longest_s, what });
+    }
+    Ok(())
+}
+
+/// Force along a wheel per slip, about none [N].
+fn gripping_n(wheel: &Wheel, soil: &dyn Soil) -> f64 {
+    const LITTLE: f64 = 1e-3;
+    let gross_n = |slip: f64| {
+        let footing = soil.wheel(&WheelContact {
+            tyre: wheel.tyre,
+            load_n: wheel.touch.load_n / wheel.tyres,
+            slip,
+            speed_m_s: 1.0,
+            earlier_passes: wheel.earlier,
+            position_m: 0.0,
+            place: Place::default(),
+        });
+        footing.map(|footing| wheel.tyres * footing.gross_traction_n)
+    };
+    match (gross_n(LITTLE), gross_n(0.0)) {
+        (Some(some), Some(none)) if some > none => (some - none) / LITTLE,
+        _ => wheel.body.slip_stiffness * wheel.touch.load_n,
+    }
+}

@@ -1,0 +1,452 @@
+//! A vehicle that is driven as a rigid body.
+
+use crate::accounts::{Own, Step};
+use crate::chassis::Chassis;
+use crate::ground::Ground;
+use crate::pace::{self, Carried};
+use crate::spin::Spin;
+use crate::standing::{Weight, below, stand};
+use crate::steer::Steer;
+use crate::track::{Track, heading_of, yaw_of};
+use crate::wheel::{Felt, Scene, Touch, Wheel};
+use crate::world::{State, World, properties};
+use crate::BodyError;
+use headland_plugin::Soil;
+use headland_sim::{AxleMotion, Axles, Carriage, Model, Motion, Push, Start, Stepped};
+use rapier3d_f64::prelude::Vector;
+
+/// Resistances come to their whole force on this way: about a rest they are springs, and hold [m].
+///
+/// Source: Dahl, *A Solid Friction Model* (1968).
+const RESTING_M: f64 = 1e-3;
+/// A vehicle that has come to rest rocks on its tyres, and has set off beyond this speed [m/s].
+const SETS_OFF_M_S: f64 = 0.05;
+/// A vehicle that leans further than this has overturned: none that works stands so [cosine of 60°].
+const OVERTURNED: f64 = 0.5;
+/// Wheels that slip more than the limit for this long only dig [s].
+const DIGS_S: f64 = 1.0;
+/// A vehicle this many times the driver's look ahead beside its path has lost it.
+const LOST: f64 = 2.0;
+
+/// A vehicle in motion.
+#[derive(Debug)]
+pub(crate) struct Rig<'a> {
+    model: &'a Model,
+    chassis: &'a Chassis,
+    axles: &'a Axles,
+    soil: &'a dyn Soil,
+    ground: Ground<'a>,
+    world: World,
+    wheels: Vec<Wheel<'a>>,
+    spin: Spin,
+    steer: Steer,
+    track: Track<'a>,
+    state: State,
+    mass_kg: f64,
+    /// How much of the resistances acts, and which way.
+    way: f64,
+    resting: bool,
+    acceleration_m_s2: Option<f64>,
+    digging_s: f64,
+    own: Own,
+    first_spring_j: f64,
+    trouble: Option<String>,
+}
+
+impl<'a> Rig<'a> {
+    /// Puts a vehicle on its ground.
+    pub fn new(model: &'a Model, chassis: &'a Chassis, start: Start, step_s: f64) -> Result<Self, BodyError> {
+        let axles = model.axles.as_ref().ok_or(BodyError::NoAxles)?;
+        let soil = model.soil.as_deref().ok_or(BodyError::NoSoil)?;
+        chassis.check(axles)?;
+        let mass_kg = model.vehicle.mass_kg;
+        let rotating_kg = model.vehicle.rotating_mass_kg;
+        for (name, found) in [("mass_kg", mass_kg), ("rotating_mass_kg", rotating_kg)] {
+            if found <= 0.0 || found.is_nan() {
+                return Err(BodyError::NotPositive { name, found });
+            }
+        }
+        let ground = Ground::of(&*model.terrain, start.position_m)?;
+        let weight_n = mass_kg * model.gravity_m_s2;
+        let mut wheels = wheels(axles, chassis, weight_n);
+        let mut steer = Steer::new(chassis.steering, axles);
+        steer.start();
+        let track = Track::at(&*model.terrain, start.position_m);
+        let height_m = axles.centre_of_gravity_height_m;
+        let weight = Weight { newtons: weight_n, centre: Vector::ZERO, height_m };
+        let yaw_rad = yaw_of(track.place.heading_rad) + steer.aslant_rad();
+        let pose = stand(&mut wheels, &ground, soil, weight, &track.place, yaw_rad)?;
+        for wheel in &wheels {
+            let most_m = wheel.tyre.section_height_m;
+            if wheel.touch.deflection_m > most_m {
+                let depth_m = wheel.touch.deflection_m;
+                return Err(BodyError::BelowGround { wheel: wheel.told.clone(), depth_m, most_m });
+            }
+        }
+        let velocity = along_path(&track) * start.speed_m_s;
+        let world = World::new(pose, properties(chassis, mass_kg, height_m, mass_kg), velocity, model.gravity_m_s2);
+        let tyres: Vec<(usize, f64)> = wheels.iter().map(|wheel| (wheel.axle, wheel.tyres)).collect();
+        let spin = Spin::new(axles, chassis, &tyres, rotating_kg, start.speed_m_s);
+        let carried = Carried {
+            mass_kg,
+            roll_kg_m2: chassis.roll_inertia_kg_m2,
+            pitch_kg_m2: chassis.pitch_inertia_kg_m2,
+        };
+        pace::check(&wheels, &spin, soil, carried, step_s)?;
+        let mut rig = Self {
+            model,
+            chassis,
+            axles,
+            soil,
+            ground,
+            state: world.state(),
+            world,
+            wheels,
+            spin,
+            steer,
+            track,
+            mass_kg,
+            way: if start.speed_m_s == 0.0 { 0.0 } else { start.speed_m_s.signum() },
+            resting: start.speed_m_s == 0.0,
+            acceleration_m_s2: None,
+            digging_s: 0.0,
+            own: Own::default(),
+            first_spring_j: 0.0,
+            trouble: None,
+        };
+        // A step of no length: what the wheels feel where they stand, for the driver who knows what resists.
+        rig.touch();
+        rig.feel(0.0);
+        rig.first_spring_j = rig.spring_j();
+        Ok(rig)
+    }
+
+    /// Energy in the tyres [J].
+    fn spring_j(&self) -> f64 {
+        self.wheels.iter().map(|wheel| wheel.spring_j(self.deflection_m(wheel))).sum()
+    }
+
+    /// How far a tyre gives way now [m].
+    fn deflection_m(&self, wheel: &Wheel) -> f64 {
+        let hub = self.state.point(wheel.arm);
+        below(&self.ground, wheel, hub)
+            .map_or(0.0, |spot| 0.5 * wheel.tyre.diameter_m - Wheel::above(hub, &spot).0 - wheel.sinkage_m)
+    }
+
+    /// Lets every wheel meet the ground below it.
+    fn touch(&mut self) {
+        let state = self.state;
+        let axes = (state.ahead(), state.left());
+        for wheel in &mut self.wheels {
+            let hub = state.point(wheel.arm);
+            match below(&self.ground, wheel, hub) {
+                Ok(spot) => {
+                    let angle_rad = self.steer.angle_rad(wheel.axle, wheel.arm.x, wheel.arm.y);
+                    wheel.meet(hub, &spot, axes, angle_rad, |point| state.velocity_at(point));
+                }
+                Err(_) => {
+                    self.trouble = Some(format!(
+                        "{} comes to the edge of the map, {:.1} m east and {:.1} m north of its origin",
+                        wheel.told, hub.x, hub.y
+                    ));
+                }
+            }
+        }
+    }
+
+    /// Lets every wheel feel the ground, along a step.
+    fn feel(&mut self, step_s: f64) {
+        let scene = Scene {
+            soil: self.soil,
+            place: self.track.place,
+            position_m: self.track.position_m,
+            speed_m_s: self.state.speed_m_s(),
+            load_n: self.wheels.iter().map(|wheel| wheel.touch.load_n).sum(),
+            slip_limit: self.axles.slip_limit,
+        };
+        for (index, wheel) in self.wheels.iter_mut().enumerate() {
+            wheel.feel(&scene, self.spin.wheels_m_s[index], step_s);
+        }
+    }
+
+    /// Takes what is carried and what turns as the models say; returns the energy that comes with it [J].
+    fn load(&mut self, push: &Push) -> f64 {
+        let mut gained_j = self.spin.couple(push.turning_kg);
+        if push.mass_kg != self.mass_kg {
+            if self.chassis.payload.is_none() && self.trouble.is_none() {
+                self.trouble = Some(format!(
+                    "the vehicle is to carry {:.0} kg, and its `body` has no `payload` to say where",
+                    push.mass_kg - self.model.vehicle.mass_kg
+                ));
+            }
+            let before_j = self.world.kinetic_j();
+            let height_m = self.axles.centre_of_gravity_height_m;
+            self.world.load(properties(self.chassis, self.model.vehicle.mass_kg, height_m, push.mass_kg));
+            self.mass_kg = push.mass_kg;
+            self.state = self.world.state();
+            gained_j += self.world.kinetic_j() - before_j;
+        }
+        if push.towed_kg != 0.0 && self.trouble.is_none() {
+            self.trouble = Some(format!(
+                "a task pulls {:.0} kg on other wheels, which a rigid body cannot do yet",
+                push.towed_kg
+            ));
+        }
+        gained_j
+    }
+
+    fn aim(&mut self, step_s: f64) {
+        let axes = (self.state.ahead(), self.state.left());
+        let from = self.state.point(Vector::new(self.steer.pivot_m, 0.0, 0.0));
+        let far_m = self.steer.look_ahead_m() + self.steer.pivot_m;
+        let aim = self.track.aim(from, axes, far_m, self.steer.aslant_rad());
+        self.steer.turn(aim, step_s);
+    }
+
+    fn hitch(&self) -> Vector {
+        let up_m = self.axles.hitch_height_m - self.axles.centre_of_gravity_height_m;
+        self.state.point(Vector::new(self.chassis.hitch_position_m, 0.0, up_m))
+    }
+
+    /// What is wrong after a step.
+    fn look(&mut self, step_s: f64) {
+        let Some(told) = self.wrong(step_s) else { return };
+        self.trouble.get_or_insert(told);
+    }
+
+    fn wrong(&mut self, step_s: f64) -> Option<String> {
+        let state = &self.state;
+        if !(state.velocity.is_finite() && state.turning.is_finite() && state.centre.is_finite()) {
+            return Some("the motion is no finite number: a shorter step may help".to_owned());
+        }
+        if state.up().z < OVERTURNED {
+            let aside = if state.left().z.abs() > state.ahead().z.abs() { "its side" } else { "its end" };
+            return Some(format!("the vehicle overturned onto {aside}"));
+        }
+        if self.ground.turned(&self.track.place) {
+            return Some(BodyError::NoSurface { position_m: self.track.position_m }.to_string());
+        }
+        if let Some(wheel) = self.wheels.iter().find(|wheel| wheel.felt.gross_n.is_nan()) {
+            let load_n = wheel.touch.load_n;
+            return Some(format!("{} sinks to its hub: the ground does not carry its {load_n:.0} N", wheel.told));
+        }
+        let lost_m = LOST * self.steer.look_ahead_m();
+        if self.track.left_m.abs() > lost_m {
+            let left_m = self.track.left_m.abs();
+            return Some(format!("the vehicle is {left_m:.1} m beside its path: it cannot steer so tightly"));
+        }
+        self.digging_s = if self.slip() > self.axles.slip_limit { self.digging_s + step_s } else { 0.0 };
+        (self.digging_s > DIGS_S).then(|| {
+            let most_n: f64 = self.wheels.iter().map(|wheel| wheel.felt.gross_n).sum();
+            format!(
+                "slip past the limit: with more than the {} that the vehicle may have the ground gives its driven \
+                 wheels {most_n:.0} N, and they are asked for more",
+                self.axles.slip_limit
+            )
+        })
+    }
+
+    /// Mean slip of the driven wheels.
+    fn slip(&self) -> f64 {
+        let driven = |wheel: &&Wheel| self.axles.list()[wheel.axle].lead.is_some();
+        let count = self.wheels.iter().filter(driven).count() as f64;
+        self.wheels.iter().filter(driven).map(|wheel| wheel.slip).sum::<f64>() / count
+    }
+}
+
+/// The direction of a path on its slope.
+fn along_path(track: &Track) -> Vector {
+    let (sin, cos) = track.place.heading_rad.sin_cos();
+    let level = track.place.cos_slope();
+    Vector::new(level * sin, level * cos, track.place.sin_slope)
+}
+
+fn wheels<'a>(axles: &'a Axles, chassis: &Chassis, weight_n: f64) -> Vec<Wheel<'a>> {
+    let mut wheels = Vec::new();
+    for (index, axle) in axles.list().iter().enumerate() {
+        let of_tyre = |tyres: f64| tyres * axle.tyre.stiffness_n_per_m();
+        let sides: &[(&str, f64)] =
+            if axle.wheels == 1 { &[("middle", 0.0)] } else { &[("left", 0.5), ("right", -0.5)] };
+        for (side, part) in sides {
+            let tyres = f64::from(axle.wheels) / sides.len() as f64;
+            let given_m = axles.load_n(index, weight_n, 0.0) / of_tyre(f64::from(axle.wheels));
+            let hub_m = 0.5 * axle.tyre.diameter_m - given_m;
+            wheels.push(Wheel {
+                name: format!("axle_{}_{side}", index + 1),
+                told: format!("the {side} wheel of axle {}", index + 1),
+                axle: index,
+                arm: Vector::new(
+                    axle.position_m,
+                    part * axle.track_m,
+                    hub_m - axles.centre_of_gravity_height_m,
+                ),
+                tyre: &axle.tyre,
+                tyres,
+                body: chassis.axles[index],
+                stiffness_n_m: of_tyre(tyres),
+                damping_n_s_m: tyres * chassis.axles[index].damping_n_s_m,
+                earlier: axles.earlier(index),
+                slip: 0.0,
+                side: 0.0,
+                sinkage_m: 0.0,
+                sinking_m_s: 0.0,
+                touch: Touch::default(),
+                felt: Felt::default(),
+            });
+        }
+    }
+    wheels
+}
+
+impl Carriage for Rig<'_> {
+    fn motion(&self) -> Motion {
+        let mut place = self.track.place;
+        place.heading_rad = heading_of(self.state.ahead(), place.heading_rad);
+        (place.east_m, place.north_m) = (self.state.centre.x, self.state.centre.y);
+        if let Some(spot) = self.ground.spot(place.east_m, place.north_m) {
+            place.elevation_m = spot.height_m;
+        }
+        Motion {
+            position_m: self.track.position_m,
+            speed_m_s: if self.resting { 0.0 } else { self.state.speed_m_s() },
+            acceleration_m_s2: self.acceleration_m_s2,
+            driven_m_s: self.spin.driven_m_s(),
+            place,
+            resistance_n: self.wheels.iter().map(|wheel| wheel.felt.resistance_n).sum(),
+            slip: self.slip(),
+        }
+    }
+
+    fn axle(&self, index: usize) -> AxleMotion {
+        let own = || self.wheels.iter().filter(|wheel| wheel.axle == index);
+        let sum = |of: &dyn Fn(&Wheel) -> f64| own().map(of).sum::<f64>();
+        let wheels = own().count() as f64;
+        AxleMotion {
+            load_n: sum(&|wheel| wheel.touch.load_n),
+            slip: sum(&|wheel| wheel.slip) / wheels,
+            traction_n: sum(&|wheel| wheel.felt.gross_n),
+            resistance_n: sum(&|wheel| wheel.felt.resistance_n),
+            sinkage_m: sum(&|wheel| wheel.felt.rut_m) / wheels,
+        }
+    }
+
+    fn advance(&mut self, push: &Push, step_s: f64) -> Stepped {
+        let mass_j = self.load(push);
+        let before = self.state;
+        let speed_m_s = before.speed_m_s();
+        self.aim(step_s);
+        self.touch();
+        self.feel(step_s);
+        self.way = (self.way + step_s * speed_m_s / RESTING_M) / (1.0 + step_s * speed_m_s.abs() / RESTING_M);
+        let rolled: Vec<f64> = self.spin.wheels_m_s.clone();
+        let turned =
+            self.spin.advance(push.drive_n, push.brake_n, |wheel| self.wheels[wheel].felt.gross_n, step_s);
+        let (ahead, hitch) = (before.ahead(), self.hitch());
+        let pulled = ahead * (push.hitch_n - self.way * push.drawbar_n);
+        let mut force = ahead * (push.free_n - self.way * push.resistance_n) + pulled;
+        let mut moment = (hitch - before.centre).cross(pulled);
+        for (index, wheel) in self.wheels.iter().enumerate() {
+            let own = wheel.force_n(self.way);
+            force += own;
+            moment += (wheel.touch.point - before.centre).cross(own);
+            // What spins a wheel up turns the vehicle back.
+            let inertia = self.spin.masses_kg[index] * wheel.touch.height_m;
+            moment -= wheel.touch.across * (inertia * self.spin.changes_m_s2[index]);
+        }
+        self.world.step(force, moment, step_s);
+        self.state = self.world.state();
+        let step = Step {
+            before: &before,
+            after: &self.state,
+            lasts_s: step_s,
+            way: self.way,
+            weight_n: self.mass_kg * self.model.gravity_m_s2,
+            hitch,
+            turned,
+        };
+        let rolling = |wheel: usize| 0.5 * (rolled[wheel] + self.spin.wheels_m_s[wheel]);
+        let mut stepped = step.work(&self.wheels, rolling, &mut self.own);
+        stepped.mass_j = -mass_j;
+        for wheel in &mut self.wheels {
+            wheel.sinkage_m += step_s * wheel.sinking_m_s;
+        }
+        self.track.follow(self.state.pose.translation);
+        let after_m_s = self.state.speed_m_s();
+        self.acceleration_m_s2 = Some((after_m_s - speed_m_s) / step_s);
+        self.resting = if self.resting {
+            after_m_s.abs() <= SETS_OFF_M_S
+        } else {
+            after_m_s * speed_m_s <= 0.0
+        };
+        self.look(step_s);
+        stepped
+    }
+
+    fn trouble(&self) -> Option<String> {
+        self.trouble.clone()
+    }
+
+    fn kinetic_j(&self) -> f64 {
+        self.world.kinetic_j() + self.spin.kinetic_j()
+    }
+
+    fn accounts(&self) -> Vec<(&'static str, f64)> {
+        vec![
+            ("side slip", self.own.side_j),
+            ("tyre damping", self.own.damping_j),
+            ("tyre springs", self.spring_j() - self.first_spring_j),
+        ]
+    }
+
+    fn channels(&self) -> Vec<String> {
+        let whole = ["roll_rad", "pitch_rad", "yaw_rate_rad_s", "side_speed_m_s", "path_offset_m", "height_m"];
+        let mut names: Vec<String> = whole.map(str::to_owned).into();
+        for wheel in &self.wheels {
+            names.extend(WHEEL_CHANNELS.map(|what| format!("{}_{what}", wheel.name)));
+        }
+        names
+    }
+
+    fn write(&self, row: &mut Vec<f64>) {
+        let State { turning, velocity, centre, .. } = self.state;
+        let (ahead, left, up) = (self.state.ahead(), self.state.left(), self.state.up());
+        row.extend([
+            // The right side down, and the nose up, count positive.
+            left.z.atan2(up.z),
+            ahead.z.asin(),
+            // As headings, clockwise.
+            -turning.z,
+            velocity.dot(left),
+            self.track.left_m,
+            centre.z,
+        ]);
+        for wheel in &self.wheels {
+            let Touch { load_n, deflection_m, steer_rad, .. } = wheel.touch;
+            let Felt { gross_n, side_n, resistance_n, rut_m, .. } = wheel.felt;
+            row.extend([
+                load_n,
+                wheel.slip,
+                (-wheel.side).clamp(-1.0, 1.0).asin(),
+                gross_n,
+                side_n,
+                resistance_n,
+                rut_m,
+                deflection_m,
+                steer_rad,
+            ]);
+        }
+    }
+}
+
+/// What is written of a wheel.
+const WHEEL_CHANNELS: [&str; 9] = [
+    "load_n",
+    "slip",
+    "slip_angle_rad",
+    "traction_n",
+    "side_force_n",
+    "resistance_n",
+    "sinkage_m",
+    "deflection_m",
+    "steer_rad",
+];

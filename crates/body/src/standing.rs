@@ -1,0 +1,125 @@
+//! Where a vehicle stands at rest: height, roll and pitch at which tyres and weight balance.
+//!
+//! Newton's method on three numbers. On a slope the ground holds along itself what the vehicle would slide with, as under
+//! braked wheels.
+
+use crate::BodyError;
+use crate::ground::Ground;
+use crate::wheel::Wheel;
+use headland_plugin::{Place, Soil, Spot, WheelContact};
+use rapier3d_f64::prelude::{Pose, Rotation, Vector};
+
+/// The weight that stands.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Weight {
+    pub newtons: f64,
+    /// Its centre in the axes of the vehicle [m].
+    pub centre: Vector,
+    /// Height of the vehicle's own centre of gravity above level ground [m].
+    pub height_m: f64,
+}
+
+/// Below a wheel, or why there is nothing.
+pub(crate) fn below(ground: &Ground, wheel: &Wheel, hub: Vector) -> Result<Spot, BodyError> {
+    ground.spot(hub.x, hub.y).ok_or_else(|| BodyError::OffTheMap {
+        wheel: wheel.told.clone(),
+        east_m: hub.x,
+        north_m: hub.y,
+    })
+}
+
+/// Finds the pose at a place and heading, and leaves the wheels as they stand there.
+pub(crate) fn stand(
+    wheels: &mut [Wheel],
+    ground: &Ground,
+    soil: &dyn Soil,
+    weight: Weight,
+    place: &Place,
+    yaw_rad: f64,
+) -> Result<Pose, BodyError> {
+    const MOST_ITERATIONS: usize = 500;
+    /// Forces balance to this part of the weight.
+    const BALANCED: f64 = 1e-12;
+    /// What a wheel in the air counts for, so that three equations keep three unknowns.
+    const IN_THE_AIR: f64 = 1e-2;
+    let up = Vector::new(0.0, 0.0, 1.0);
+    let spot = ground.spot(place.east_m, place.north_m);
+    let begin_m = spot.map_or(place.elevation_m, |spot| spot.height_m);
+    let mut origin = Vector::new(place.east_m, place.north_m, begin_m + weight.height_m);
+    let mut turn = Rotation::from_rotation_z(yaw_rad);
+    for _ in 0..MOST_ITERATIONS {
+        let axes = [turn * Vector::X, turn * Vector::Y, turn * up];
+        let centre = origin + turn * weight.centre;
+        let (mut force, mut moment, mut middle, mut loads) = (Vector::ZERO, Vector::ZERO, Vector::ZERO, 0.0);
+        let mut stiff = [[0.0; 3]; 3];
+        for wheel in wheels.iter_mut() {
+            let hub = origin + turn * wheel.arm;
+            let (height_m, normal) = Wheel::above(hub, &below(ground, wheel, hub)?);
+            let deflection_m = 0.5 * wheel.tyre.diameter_m - height_m - wheel.sinkage_m;
+            let load_n = (wheel.stiffness_n_m * deflection_m).max(0.0);
+            (wheel.touch.load_n, wheel.touch.deflection_m, wheel.touch.height_m) = (load_n, deflection_m, height_m);
+            let point = hub - normal * height_m;
+            force += normal * load_n;
+            moment += (point - centre).cross(normal * load_n);
+            middle += point * load_n;
+            loads += load_n;
+            let arm = wheel.arm - weight.centre;
+            let lever = [1.0, arm.y, -arm.x];
+            let k = wheel.stiffness_n_m * if deflection_m > 0.0 { 1.0 } else { IN_THE_AIR };
+            for (row, a) in stiff.iter_mut().zip(lever) {
+                for (cell, b) in row.iter_mut().zip(lever) {
+                    *cell += k * a * b;
+                }
+            }
+            sink(wheel, soil, place);
+        }
+        let needed = up * weight.newtons - force;
+        if loads > 0.0 {
+            let held = needed - axes[2] * needed.dot(axes[2]);
+            moment += (middle / loads - centre).cross(held);
+        }
+        let off = [-needed.dot(axes[2]), moment.dot(axes[0]), moment.dot(axes[1])];
+        if off.iter().all(|one| one.abs() <= BALANCED * weight.newtons) {
+            return Ok(Pose::from_parts(origin, turn));
+        }
+        let [rise, roll, pitch] = solved(stiff, off);
+        let turned = roll.hypot(pitch);
+        if !(rise.is_finite() && turned < 1.0) {
+            return Err(BodyError::NoRest);
+        }
+        origin += axes[2] * rise;
+        turn = (turn * Rotation::from_scaled_axis(Vector::new(roll, pitch, 0.0))).normalize();
+    }
+    Err(BodyError::NoRest)
+}
+
+/// The rut that a wheel has made where it stands.
+fn sink(wheel: &mut Wheel, soil: &dyn Soil, place: &Place) {
+    let footing = soil.wheel(&WheelContact {
+        tyre: wheel.tyre,
+        load_n: wheel.touch.load_n / wheel.tyres,
+        slip: 0.0,
+        speed_m_s: 0.0,
+        earlier_passes: wheel.earlier,
+        position_m: 0.0,
+        place: *place,
+    });
+    if let Some(footing) = footing.filter(|footing| footing.sinkage_m.is_finite()) {
+        wheel.sinkage_m = footing.sinkage_m;
+    }
+}
+
+/// Three equations by Cramer's rule.
+fn solved(m: [[f64; 3]; 3], right: [f64; 3]) -> [f64; 3] {
+    let cross = |a: [f64; 3], b: [f64; 3]| {
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    };
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let determinant = dot(m[0], cross(m[1], m[2]));
+    // The matrix is symmetric, so its rows are its columns.
+    [
+        dot(right, cross(m[1], m[2])) / determinant,
+        dot(m[0], cross(right, m[2])) / determinant,
+        dot(m[0], cross(m[1], right)) / determinant,
+    ]
+}

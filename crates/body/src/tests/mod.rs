@@ -1,0 +1,111 @@
+//! Cross-checks: against the longitudinal fidelity, against formulas, against itself.
+
+mod against_longitudinal;
+mod standing;
+
+use crate::{AxleBody, Chassis, Differential, Steering, SteeringMode, simulate};
+use headland_plugin::{Air, Driveline, Soil, Terrain, Tyre};
+use headland_sim::{Axle, Axles, Cycle, Model, Outcome, Phase, Resistance, Start, Until, Vehicle};
+
+pub const GRAVITY: f64 = 9.806_65;
+pub const MASS_KG: f64 = 13_019.3;
+
+pub const TYRE: Tyre = Tyre {
+    width_m: 0.9,
+    diameter_m: 2.045,
+    section_height_m: 0.54,
+    inflation_pa: 1.5e5,
+    carcass_pa: 0.0,
+    stiffness_n_per_m: None,
+};
+
+pub fn axle(position_m: f64) -> Axle {
+    Axle { position_m, track_m: 2.1, wheels: 2, tyre: TYRE, lead: Some(1.0) }
+}
+
+/// A tractor of 13 t on four equal wheels, its centre of gravity nearer to the front axle.
+pub fn axles() -> Axles {
+    Axles::new(vec![axle(1.6), axle(-2.0)], 1.3, 0.7, 0.5).unwrap()
+}
+
+pub fn chassis() -> Chassis {
+    let axle = AxleBody {
+        damping_n_s_m: 6e3,
+        friction: 0.8,
+        slip_stiffness: 12.0,
+        cornering_stiffness_per_rad: 6.0,
+        relaxation_length_m: 0.7,
+        differential: Differential::Locked,
+    };
+    Chassis {
+        roll_inertia_kg_m2: 9_000.0,
+        pitch_inertia_kg_m2: 32_000.0,
+        yaw_inertia_kg_m2: 33_000.0,
+        hitch_position_m: -3.2,
+        payload: None,
+        steering: Steering {
+            mode: SteeringMode::Front,
+            limit_rad: 0.6,
+            rate_rad_s: 0.5,
+            look_ahead_m: 5.0,
+        },
+        centre: Differential::Locked,
+        axles: vec![axle; 2],
+    }
+}
+
+pub fn terrain<T: Terrain + serde::de::DeserializeOwned + 'static>(ron: &str) -> Box<dyn Terrain> {
+    Box::new(ron::from_str::<T>(ron).unwrap())
+}
+
+pub fn soil<T: Soil + serde::de::DeserializeOwned + 'static>(ron: &str) -> Box<dyn Soil> {
+    Box::new(ron::from_str::<T>(ron).unwrap())
+}
+
+pub fn driveline<T: Driveline + serde::de::DeserializeOwned + 'static>(ron: &str) -> Box<dyn Driveline> {
+    Box::new(ron::from_str::<T>(ron).unwrap())
+}
+
+pub fn model(terrain: Box<dyn Terrain>, soil: Box<dyn Soil>) -> Model {
+    Model {
+        vehicle: Vehicle {
+            mass_kg: MASS_KG,
+            rotating_mass_kg: 900.0,
+            resistance: Resistance::Drag { area_m2: 6.0 },
+        },
+        gravity_m_s2: GRAVITY,
+        air: Air { density_kg_m3: 1.238, ..Air::default() },
+        terrain,
+        axles: Some(axles()),
+        soil: Some(soil),
+        driveline: driveline::<headland_driveline::Neutral>("()"),
+        tasks: Vec::new(),
+        effects: Vec::new(),
+    }
+}
+
+pub fn cycle(speed_m_s: f64, phases: Vec<Phase>, step_s: f64) -> Cycle {
+    Cycle {
+        start: Start { position_m: 0.0, speed_m_s },
+        phases,
+        driver_gain_per_s: 1.0,
+        step_s,
+        longest_s: 1e3,
+    }
+}
+
+pub fn coast_down() -> Vec<Phase> {
+    vec![Phase::Coast { until: Until::Stopped }]
+}
+
+pub fn run(model: &Model, cycle: &Cycle) -> Outcome {
+    simulate(model, &chassis(), cycle, 0.0).unwrap()
+}
+
+pub fn last(outcome: &Outcome, channel: &str) -> f64 {
+    *outcome.trace.get(channel).unwrap_or_else(|| panic!("no channel {channel}")).last().unwrap()
+}
+
+pub fn channel<'a>(outcome: &'a Outcome, name: &str) -> &'a [f64] {
+    outcome.trace.get(name).unwrap_or_else(|| panic!("no channel {name}"))
+}

@@ -1,0 +1,205 @@
+//! One wheel, or the wheels of one side of an axle: how the ground presses, drives, holds and resists.
+//!
+//! N = k δ + c dδ/dt ≥ 0                                 normal to the ground, along the radius to the plane below the hub
+//! σ dζ/dt = (w − u) − max(|u|, |w|) ζ                   slip that a tyre has, which follows with its relaxation length σ
+//! σ dη/dt = −v − hypot(u, v) η                          the same across it; at rest both are springs
+//! G = soil(ζ, N), or μ N tanh(c_ζ ζ / μ)                along the wheel; the second where the ground knows no slip
+//! S = μ N tanh(c_α η / μ)                               across it
+//! (G, S) → (G, S) / max(1, hypot(G, S) / (μ N))         no more than the friction circle holds
+//!
+//! u and v are the velocity of the vehicle at the ground, along and across the wheel, w the speed at which it rolls.
+//! Sources: Pacejka, *Tire and Vehicle Dynamics* (2012), chapter 7 (single contact point with relaxation) and chapter 4
+//! (similarity, the bound of combined forces); the soil's own for G. Tread and carcass damp slip with the time constant c / k
+//! of the tyre. Leaves out the mass of the wheel apart from the chassis, camber, and the moment that turns a wheel back.
+
+use crate::chassis::AxleBody;
+use headland_plugin::{Contact, Place, Soil, Spot, Tyre, WheelContact};
+use rapier3d_f64::prelude::Vector;
+
+/// Soils are asked for slips up to this: a wheel that slips more only spins.
+const MOST_SLIP: f64 = 0.9;
+/// Ruts deepen as wheels come to new ground; under one that stands as if it went so fast [m/s].
+const SLOWEST_M_S: f64 = 1.0;
+
+/// The wheel as it is built.
+#[derive(Clone, Debug)]
+pub(crate) struct Wheel<'a> {
+    /// As its channels begin.
+    pub name: String,
+    /// As sentences call it.
+    pub told: String,
+    pub axle: usize,
+    /// Place of the hub in the axes of the vehicle, from its own centre of gravity [m].
+    pub arm: Vector,
+    pub tyre: &'a Tyre,
+    /// Tyres side by side.
+    pub tyres: f64,
+    pub body: AxleBody,
+    /// Of all its tyres [N/m].
+    pub stiffness_n_m: f64,
+    pub damping_n_s_m: f64,
+    pub earlier: u32,
+    /// Slip along and across, ζ and η.
+    pub slip: f64,
+    pub side: f64,
+    /// Depth of the rut [m].
+    pub sinkage_m: f64,
+    /// How fast it deepens [m/s].
+    pub sinking_m_s: f64,
+    /// What it last met.
+    pub touch: Touch,
+    /// What it last felt.
+    pub felt: Felt,
+}
+
+/// Where a wheel meets the ground.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Touch {
+    pub point: Vector,
+    pub normal: Vector,
+    /// Along and across the wheel in the plane of the ground.
+    pub along: Vector,
+    pub across: Vector,
+    /// Hub above the ground, along the normal [m].
+    pub height_m: f64,
+    pub deflection_m: f64,
+    pub load_n: f64,
+    /// Velocity of the vehicle there [m/s].
+    pub along_m_s: f64,
+    pub across_m_s: f64,
+    pub steer_rad: f64,
+}
+
+/// Forces in the plane of the ground [N].
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Felt {
+    pub gross_n: f64,
+    pub side_n: f64,
+    pub resistance_n: f64,
+    /// What the soil says of the depth; NaN where it does not know.
+    pub rut_m: f64,
+}
+
+/// What all wheels share at one instant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scene<'a> {
+    pub soil: &'a dyn Soil,
+    pub place: Place,
+    pub position_m: f64,
+    /// Speed of the vehicle [m/s].
+    pub speed_m_s: f64,
+    /// Load of all wheels [N].
+    pub load_n: f64,
+    /// Most slip that soils are asked for.
+    pub slip_limit: f64,
+}
+
+impl Wheel<'_> {
+    /// Height of the hub above the plane below it, along its normal [m], and the normal.
+    pub fn above(hub: Vector, spot: &Spot) -> (f64, Vector) {
+        let normal = Vector::new(-spot.rise_east, -spot.rise_north, 1.0).normalize();
+        ((hub.z - spot.height_m) * normal.z, normal)
+    }
+
+    /// Meets the ground: `left` and `ahead` are axes of the vehicle, `velocity` gives that of a point fixed to it.
+    pub fn meet(
+        &mut self,
+        hub: Vector,
+        spot: &Spot,
+        (ahead, left): (Vector, Vector),
+        steer_rad: f64,
+        velocity: impl Fn(Vector) -> Vector,
+    ) {
+        let (height_m, normal) = Self::above(hub, spot);
+        let point = hub - normal * height_m;
+        let (sin, cos) = steer_rad.sin_cos();
+        let axis = left * cos - ahead * sin;
+        let along = axis.cross(normal).normalize();
+        let across = normal.cross(along);
+        let moving = velocity(point);
+        let deflection_m = 0.5 * self.tyre.diameter_m - height_m - self.sinkage_m;
+        let closing_m_s = -moving.dot(normal) - self.sinking_m_s;
+        let pressed_n = self.stiffness_n_m * deflection_m + self.damping_n_s_m * closing_m_s;
+        let load_n = if deflection_m > 0.0 { pressed_n.max(0.0) } else { 0.0 };
+        self.touch = Touch {
+            point,
+            normal,
+            along,
+            across,
+            height_m,
+            deflection_m,
+            load_n,
+            along_m_s: moving.dot(along),
+            across_m_s: moving.dot(across),
+            steer_rad,
+        };
+    }
+
+    /// Feels the ground at the speed at which it rolls, and lets its slips follow for a step.
+    pub fn feel(&mut self, scene: &Scene, rolling_m_s: f64, step_s: f64) {
+        let Touch { load_n, along_m_s: u, across_m_s: v, point, .. } = self.touch;
+        let AxleBody { friction: mu, relaxation_length_m: sigma, slip_stiffness, .. } = self.body;
+        let w = rolling_m_s;
+        let follow = |slip: f64, sliding: f64, passing: f64| {
+            (slip + step_s * sliding / sigma) / (1.0 + step_s * passing / sigma)
+        };
+        let slip = follow(self.slip, w - u, u.abs().max(w.abs()));
+        let side = follow(self.side, -v, u.hypot(v));
+        let rate = |after: f64, before: f64| if step_s > 0.0 { (after - before) / step_s } else { 0.0 };
+        let damping_s = self.damping_n_s_m / self.stiffness_n_m;
+        let felt_slip = slip + damping_s * rate(slip, self.slip);
+        let felt_side = side + damping_s * rate(side, self.side);
+        (self.slip, self.side) = (slip, side);
+        if load_n <= 0.0 {
+            (self.slip, self.side) = (0.0, 0.0);
+            self.sinking_m_s = 0.0;
+            self.felt = Felt { rut_m: f64::NAN, ..Felt::default() };
+            return;
+        }
+        let place = Place { east_m: point.x, north_m: point.y, ..scene.place };
+        let position_m = scene.position_m + self.arm.x;
+        let footing = scene.soil.wheel(&WheelContact {
+            tyre: self.tyre,
+            load_n: load_n / self.tyres,
+            slip: of_soil(felt_slip).clamp(-scene.slip_limit, scene.slip_limit),
+            speed_m_s: u.abs(),
+            earlier_passes: self.earlier,
+            position_m,
+            place,
+        });
+        let hold_n = mu * load_n;
+        let (gross_n, resistance_n, rut_m) = if let Some(footing) = footing {
+            let (gross_n, resistance_n) = (footing.gross_traction_n, footing.motion_resistance_n);
+            (self.tyres * gross_n, self.tyres * resistance_n, footing.sinkage_m)
+        } else {
+            let contact = Contact { load_n: scene.load_n, speed_m_s: scene.speed_m_s.abs(), position_m };
+            let whole_n = scene.soil.resistance_at_n(&contact, &place);
+            let gross_n = hold_n * (slip_stiffness * felt_slip / mu).tanh();
+            (gross_n, whole_n * load_n / scene.load_n, f64::NAN)
+        };
+        let side_n = hold_n * (self.body.cornering_stiffness_per_rad * felt_side / mu).tanh();
+        let beyond = (gross_n.hypot(side_n) / hold_n).max(1.0);
+        let pace_m_s = u.abs().max(SLOWEST_M_S);
+        let deeper_m = if rut_m.is_nan() { 0.0 } else { rut_m - self.sinkage_m };
+        self.sinking_m_s = deeper_m * pace_m_s / (sigma + step_s * pace_m_s);
+        self.felt = Felt { gross_n: gross_n / beyond, side_n: side_n / beyond, resistance_n, rut_m };
+    }
+
+    /// Force of the ground on the vehicle [N], where a part `way` of the resistance acts.
+    pub fn force_n(&self, way: f64) -> Vector {
+        let Touch { normal, along, across, load_n, .. } = self.touch;
+        normal * load_n + along * (self.felt.gross_n - way * self.felt.resistance_n) + across * self.felt.side_n
+    }
+
+    /// Energy in its tyres [J].
+    pub fn spring_j(&self, deflection_m: f64) -> f64 {
+        let pressed_m = deflection_m.max(0.0);
+        0.5 * self.stiffness_n_m * pressed_m * pressed_m
+    }
+}
+
+/// A tyre's slip as soils count it: speeds are related to that at which the wheel rolls, also where it brakes.
+fn of_soil(slip: f64) -> f64 {
+    let slip = slip.clamp(-MOST_SLIP / (1.0 + MOST_SLIP), MOST_SLIP);
+    if slip < 0.0 { slip / (1.0 + slip) } else { slip }
+}

@@ -1,0 +1,132 @@
+//! The vehicle as rapier sees it: one body under gravity and forces that are new each step.
+
+use crate::chassis::{Chassis, Payload};
+use rapier3d_f64::prelude::{
+    MassProperties, PhysicsWorld, Pose, RigidBody, RigidBodyBuilder, RigidBodyHandle, Vector,
+};
+
+/// Rapier's world and the body in it.
+pub(crate) struct World {
+    physics: PhysicsWorld,
+    body: RigidBodyHandle,
+}
+
+impl std::fmt::Debug for World {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("World").field("body", &self.body).finish_non_exhaustive()
+    }
+}
+
+/// Motion of the body at one instant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct State {
+    /// Pose of the vehicle's own centre of gravity.
+    pub pose: Pose,
+    /// Centre of gravity with what is carried.
+    pub centre: Vector,
+    /// Its velocity [m/s].
+    pub velocity: Vector,
+    /// Angular velocity [rad/s].
+    pub turning: Vector,
+}
+
+impl State {
+    pub fn ahead(&self) -> Vector {
+        self.pose.rotation * Vector::X
+    }
+
+    pub fn left(&self) -> Vector {
+        self.pose.rotation * Vector::Y
+    }
+
+    pub fn up(&self) -> Vector {
+        self.pose.rotation * Vector::Z
+    }
+
+    /// A point of the vehicle's own axes in the world.
+    pub fn point(&self, arm: Vector) -> Vector {
+        self.pose.translation + self.pose.rotation * arm
+    }
+
+    /// Velocity of what is fixed to the vehicle at a point of the world [m/s].
+    pub fn velocity_at(&self, point: Vector) -> Vector {
+        self.velocity + self.turning.cross(point - self.centre)
+    }
+
+    /// Speed along the vehicle [m/s].
+    pub fn speed_m_s(&self) -> f64 {
+        self.velocity.dot(self.ahead())
+    }
+}
+
+/// Mass, its centre and its inertia with what is carried.
+pub(crate) fn properties(chassis: &Chassis, own_kg: f64, height_m: f64, mass_kg: f64) -> MassProperties {
+    let own = Vector::new(chassis.roll_inertia_kg_m2, chassis.pitch_inertia_kg_m2, chassis.yaw_inertia_kg_m2);
+    let carried_kg = mass_kg - own_kg;
+    let (Some(Payload { position_m, height_m: at_m }), true) = (chassis.payload, carried_kg != 0.0) else {
+        return MassProperties::new(Vector::ZERO, mass_kg, own);
+    };
+    // What is carried is a point; it lies in the middle of the vehicle's width, so the axes stay principal but for the
+    // product of inertia about the left axis, which the matrix holds.
+    let (x, z) = (position_m, at_m - height_m);
+    let share = carried_kg / mass_kg;
+    let reduced_kg = carried_kg * (1.0 - share);
+    let inertia = rapier3d_f64::math::Matrix::from_cols(
+        Vector::new(own.x + reduced_kg * z * z, 0.0, -reduced_kg * x * z),
+        Vector::new(0.0, own.y + reduced_kg * (x * x + z * z), 0.0),
+        Vector::new(-reduced_kg * x * z, 0.0, own.z + reduced_kg * x * x),
+    );
+    MassProperties::with_inertia_matrix(Vector::new(share * x, 0.0, share * z), mass_kg, inertia)
+}
+
+impl World {
+    pub fn new(pose: Pose, properties: MassProperties, velocity: Vector, gravity_m_s2: f64) -> Self {
+        let mut physics = PhysicsWorld::new();
+        physics.gravity = Vector::new(0.0, 0.0, -gravity_m_s2);
+        // Nothing touches and no joint holds: one pass is Euler's half-implicit rule, and more would change nothing else.
+        physics.integration_parameters.num_solver_iterations = 1;
+        let body: RigidBody = RigidBodyBuilder::dynamic()
+            .pose(pose)
+            .linvel(velocity)
+            .additional_mass_properties(properties)
+            .can_sleep(false)
+            .build();
+        let body = physics.insert_body(body);
+        let mut world = Self { physics, body };
+        world.physics.bodies[body].recompute_mass_properties_from_colliders(&world.physics.colliders);
+        world
+    }
+
+    pub fn state(&self) -> State {
+        let body = &self.physics.bodies[self.body];
+        State {
+            pose: *body.position(),
+            centre: body.center_of_mass(),
+            velocity: body.linvel(),
+            turning: body.angvel(),
+        }
+    }
+
+    pub fn kinetic_j(&self) -> f64 {
+        self.physics.bodies[self.body].kinetic_energy()
+    }
+
+    /// Other mass properties at the same velocity of the vehicle.
+    pub fn load(&mut self, properties: MassProperties) {
+        let colliders = &self.physics.colliders;
+        let body = &mut self.physics.bodies[self.body];
+        body.set_additional_mass_properties(properties, true);
+        body.recompute_mass_properties_from_colliders(colliders);
+    }
+
+    /// One step under a force in the centre of gravity [N] and a moment about it [N m].
+    pub fn step(&mut self, force: Vector, moment: Vector, step_s: f64) {
+        let body = &mut self.physics.bodies[self.body];
+        body.reset_forces(true);
+        body.reset_torques(true);
+        body.add_force(force, true);
+        body.add_torque(moment, true);
+        self.physics.integration_parameters.dt = step_s;
+        self.physics.step();
+    }
+}

@@ -6,7 +6,7 @@
 use crate::{Block, blocks, root};
 use headland_batch::{Comparison, Plan, Status};
 use headland_scenario::{Document, Scenario};
-use headland_sim::{End, simulate};
+use headland_sim::End;
 
 fn of_mark(mark: &str) -> Vec<Block> {
     let found: Vec<Block> = blocks().into_iter().filter(|block| block.mark == mark).collect();
@@ -38,7 +38,7 @@ fn every_scenario_of_the_documentation_reads_and_runs() {
         };
         for scenario in runs {
             let Some(cycle) = &scenario.cycle else { continue };
-            let outcome = simulate(&scenario.model(&registry).unwrap(), cycle).unwrap();
+            let outcome = scenario.fidelity.simulate(&scenario.model(&registry).unwrap(), cycle).unwrap();
             assert_eq!(outcome.end, End::Finished, "{name}");
         }
     }

@@ -9,7 +9,6 @@ use crate::plan::Plan;
 use crate::row::{Row, Status};
 use headland_plugin::Registry;
 use headland_scenario::Scenario;
-use headland_sim::simulate;
 use headland_trace::{Run, Trace, write_parquet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -159,7 +158,7 @@ pub fn run(plan: &Plan, registry: &Registry, number: u64) -> (Row, Option<Trace>
         let Some(cycle) = &scenario.cycle else {
             return (Row::without(number, Status::Refused, "there is no cycle".to_owned()), None);
         };
-        match simulate(&model, cycle) {
+        match scenario.fidelity.simulate(&model, cycle) {
             Ok(outcome) if outcome.ledger.turnover_j().is_finite() => {
                 (Row::of(number, &outcome, &plan.comparison.accounting), Some(outcome.trace))
             }

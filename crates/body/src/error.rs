@@ -44,7 +44,9 @@ pub enum BodyError {
         what: &'static str,
     },
     /// A wheel stands beyond the map.
-    #[error("{wheel} would start beyond the edge of the map, {east_m:.1} m east and {north_m:.1} m north of its origin")]
+    #[error(
+        "{wheel} would start beyond the edge of the map, {east_m:.1} m east and {north_m:.1} m north of its origin"
+    )]
     OffTheMap {
         /// Which wheel.
         wheel: String,
@@ -54,7 +56,9 @@ pub enum BodyError {
         north_m: f64,
     },
     /// A wheel is in the ground.
-    #[error("{wheel} would start {depth_m:.2} m below the ground; its tyre gives way by {most_m:.2} m at the most")]
+    #[error(
+        "{wheel} would start {depth_m:.2} m below the ground; its tyre gives way by {most_m:.2} m at the most"
+    )]
     BelowGround {
         /// Which wheel.
         wheel: String,

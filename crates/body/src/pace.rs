@@ -60,7 +60,7 @@ pub(crate) fn check(
 }
 
 /// Force along a wheel per slip, about none [N].
-fn gripping_n(wheel: &Wheel, soil: &dyn Soil) -> f64 {
+pub(crate) fn gripping_n(wheel: &Wheel, soil: &dyn Soil) -> f64 {
     const LITTLE: f64 = 1e-3;
     let gross_n = |slip: f64| {
         let footing = soil.wheel(&WheelContact {

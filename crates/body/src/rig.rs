@@ -1,5 +1,6 @@
 //! A vehicle that is driven as a rigid body.
 
+use crate::BodyError;
 use crate::accounts::{Own, Step};
 use crate::chassis::Chassis;
 use crate::ground::Ground;
@@ -10,7 +11,6 @@ use crate::steer::Steer;
 use crate::track::{Track, heading_of, yaw_of};
 use crate::wheel::{Felt, Scene, Touch, Wheel};
 use crate::world::{State, World, properties};
-use crate::BodyError;
 use headland_plugin::Soil;
 use headland_sim::{AxleMotion, Axles, Carriage, Model, Motion, Push, Start, Stepped};
 use rapier3d_f64::prelude::Vector;
@@ -21,6 +21,8 @@ use rapier3d_f64::prelude::Vector;
 const RESTING_M: f64 = 1e-3;
 /// A vehicle that has come to rest rocks on its tyres, and has set off beyond this speed [m/s].
 const SETS_OFF_M_S: f64 = 0.05;
+/// The same where brakes hold every wheel: a hard stop rocks harder, and what goes faster slides [m/s].
+const SLIDES_M_S: f64 = 0.5;
 /// A vehicle that leans further than this has overturned: none that works stands so [cosine of 60°].
 const OVERTURNED: f64 = 0.5;
 /// Wheels that slip more than the limit for this long only dig [s].
@@ -84,7 +86,8 @@ impl<'a> Rig<'a> {
             }
         }
         let velocity = along_path(&track) * start.speed_m_s;
-        let world = World::new(pose, properties(chassis, mass_kg, height_m, mass_kg), velocity, model.gravity_m_s2);
+        let world =
+            World::new(pose, properties(chassis, mass_kg, height_m, mass_kg), velocity, model.gravity_m_s2);
         let tyres: Vec<(usize, f64)> = wheels.iter().map(|wheel| (wheel.axle, wheel.tyres)).collect();
         let spin = Spin::new(axles, chassis, &tyres, rotating_kg, start.speed_m_s);
         let carried = Carried {
@@ -116,9 +119,27 @@ impl<'a> Rig<'a> {
         };
         // A step of no length: what the wheels feel where they stand, for the driver who knows what resists.
         rig.touch();
+        if start.speed_m_s == 0.0 {
+            rig.hold(weight_n);
+        }
         rig.feel(0.0);
         rig.first_spring_j = rig.spring_j();
         Ok(rig)
+    }
+
+    /// Gives the tyres the slips with which they hold a vehicle at rest on its slope.
+    fn hold(&mut self, weight_n: f64) {
+        let pressed: Vector = self.wheels.iter().map(|wheel| wheel.touch.normal * wheel.touch.load_n).sum();
+        let loads_n: f64 = self.wheels.iter().map(|wheel| wheel.touch.load_n).sum();
+        let held = Vector::Z * weight_n - pressed;
+        for wheel in &mut self.wheels {
+            let own = held * (wheel.touch.load_n / loads_n);
+            let across_n = wheel.body.cornering_stiffness_per_rad * wheel.touch.load_n;
+            if wheel.touch.load_n > 0.0 {
+                wheel.slip = own.dot(wheel.touch.along) / pace::gripping_n(wheel, self.soil);
+                wheel.side = own.dot(wheel.touch.across) / across_n;
+            }
+        }
     }
 
     /// Energy in the tyres [J].
@@ -197,10 +218,16 @@ impl<'a> Rig<'a> {
 
     fn aim(&mut self, step_s: f64) {
         let axes = (self.state.ahead(), self.state.left());
-        let from = self.state.point(Vector::new(self.steer.pivot_m, 0.0, 0.0));
+        let from =
+            self.state.point(Vector::new(self.steer.pivot_m, 0.0, -self.axles.centre_of_gravity_height_m));
         let far_m = self.steer.look_ahead_m() + self.steer.pivot_m;
         let aim = self.track.aim(from, axes, far_m, self.steer.aslant_rad());
         self.steer.turn(aim, step_s);
+    }
+
+    /// The point of the vehicle that stands for its place: on the ground below its own centre of gravity.
+    fn foot(&self) -> Vector {
+        self.state.point(Vector::new(0.0, 0.0, -self.axles.centre_of_gravity_height_m))
     }
 
     fn hitch(&self) -> Vector {
@@ -228,7 +255,10 @@ impl<'a> Rig<'a> {
         }
         if let Some(wheel) = self.wheels.iter().find(|wheel| wheel.felt.gross_n.is_nan()) {
             let load_n = wheel.touch.load_n;
-            return Some(format!("{} sinks to its hub: the ground does not carry its {load_n:.0} N", wheel.told));
+            return Some(format!(
+                "{} sinks to its hub: the ground does not carry its {load_n:.0} N",
+                wheel.told
+            ));
         }
         let lost_m = LOST * self.steer.look_ahead_m();
         if self.track.left_m.abs() > lost_m {
@@ -302,7 +332,8 @@ impl Carriage for Rig<'_> {
     fn motion(&self) -> Motion {
         let mut place = self.track.place;
         place.heading_rad = heading_of(self.state.ahead(), place.heading_rad);
-        (place.east_m, place.north_m) = (self.state.centre.x, self.state.centre.y);
+        let foot = self.foot();
+        (place.east_m, place.north_m) = (foot.x, foot.y);
         if let Some(spot) = self.ground.spot(place.east_m, place.north_m) {
             place.elevation_m = spot.height_m;
         }
@@ -370,11 +401,12 @@ impl Carriage for Rig<'_> {
         for wheel in &mut self.wheels {
             wheel.sinkage_m += step_s * wheel.sinking_m_s;
         }
-        self.track.follow(self.state.pose.translation);
+        self.track.follow(self.foot());
         let after_m_s = self.state.speed_m_s();
         self.acceleration_m_s2 = Some((after_m_s - speed_m_s) / step_s);
         self.resting = if self.resting {
-            after_m_s.abs() <= SETS_OFF_M_S
+            let held = self.spin.wheels_m_s.iter().all(|speed| *speed == 0.0);
+            after_m_s.abs() <= if held { SLIDES_M_S } else { SETS_OFF_M_S }
         } else {
             after_m_s * speed_m_s <= 0.0
         };
@@ -399,7 +431,8 @@ impl Carriage for Rig<'_> {
     }
 
     fn channels(&self) -> Vec<String> {
-        let whole = ["roll_rad", "pitch_rad", "yaw_rate_rad_s", "side_speed_m_s", "path_offset_m", "height_m"];
+        let whole =
+            ["roll_rad", "pitch_rad", "yaw_rate_rad_s", "side_speed_m_s", "path_offset_m", "height_m"];
         let mut names: Vec<String> = whole.map(str::to_owned).into();
         for wheel in &self.wheels {
             names.extend(WHEEL_CHANNELS.map(|what| format!("{}_{what}", wheel.name)));

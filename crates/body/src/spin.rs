@@ -57,7 +57,13 @@ pub(crate) struct Turned {
 
 impl Spin {
     /// Wheels in the order of the axles, left before right, of which `tyres` says how many tyres each is.
-    pub fn new(axles: &Axles, chassis: &Chassis, tyres: &[(usize, f64)], rotating_kg: f64, speed_m_s: f64) -> Self {
+    pub fn new(
+        axles: &Axles,
+        chassis: &Chassis,
+        tyres: &[(usize, f64)],
+        rotating_kg: f64,
+        speed_m_s: f64,
+    ) -> Self {
         let all: f64 = tyres.iter().map(|(_, tyres)| tyres).sum();
         let masses_kg: Vec<f64> = tyres.iter().map(|(_, own)| rotating_kg * own / all).collect();
         let of_axle = |axle: usize| (0..tyres.len()).filter(move |wheel| tyres[*wheel].0 == axle);
@@ -86,9 +92,12 @@ impl Spin {
             .iter()
             .filter(|(axle, _)| chassis.axles[*axle].differential == Differential::Open)
             .filter_map(|(axle, _)| match of_axle(*axle).collect::<Vec<_>>()[..] {
-                [left, right] => {
-                    Some(Difference { left, right, mass_kg: masses_kg[left] + masses_kg[right], speed_m_s: 0.0 })
-                }
+                [left, right] => Some(Difference {
+                    left,
+                    right,
+                    mass_kg: masses_kg[left] + masses_kg[right],
+                    speed_m_s: 0.0,
+                }),
                 _ => None,
             })
             .collect();
@@ -145,7 +154,13 @@ impl Spin {
     }
 
     /// One step under the driveline's force and the brakes, with the ground's force on each wheel `gross_n`.
-    pub fn advance(&mut self, drive_n: f64, brake_n: f64, gross_n: impl Fn(usize) -> f64, step_s: f64) -> Turned {
+    pub fn advance(
+        &mut self,
+        drive_n: f64,
+        brake_n: f64,
+        gross_n: impl Fn(usize) -> f64,
+        step_s: f64,
+    ) -> Turned {
         let mut turned = Turned::default();
         self.changes_m_s2.copy_from_slice(&self.wheels_m_s);
         for shaft in &mut self.shafts {

@@ -42,11 +42,17 @@ pub(crate) fn stand(
     const BALANCED: f64 = 1e-12;
     /// What a wheel in the air counts for, so that three equations keep three unknowns.
     const IN_THE_AIR: f64 = 1e-2;
-    let up = Vector::new(0.0, 0.0, 1.0);
+    /// An iteration goes no further than this: wheels come to the ground and leave it on the way [m, rad].
+    const FURTHEST_M: f64 = 0.1;
+    const FURTHEST_RAD: f64 = 0.05;
+    /// None stands that leans further than 60° [1].
+    const LEANING: f64 = 0.5;
+    let up = Vector::Z;
     let spot = ground.spot(place.east_m, place.north_m);
-    let begin_m = spot.map_or(place.elevation_m, |spot| spot.height_m);
-    let mut origin = Vector::new(place.east_m, place.north_m, begin_m + weight.height_m);
-    let mut turn = Rotation::from_rotation_z(yaw_rad);
+    let spot = spot.unwrap_or(Spot { height_m: place.elevation_m, ..Spot::default() });
+    let normal = Vector::new(-spot.rise_east, -spot.rise_north, 1.0).normalize();
+    let mut origin = Vector::new(place.east_m, place.north_m, spot.height_m) + normal * weight.height_m;
+    let mut turn = (Rotation::from_rotation_arc(up, normal) * Rotation::from_rotation_z(yaw_rad)).normalize();
     for _ in 0..MOST_ITERATIONS {
         let axes = [turn * Vector::X, turn * Vector::Y, turn * up];
         let centre = origin + turn * weight.centre;
@@ -57,7 +63,8 @@ pub(crate) fn stand(
             let (height_m, normal) = Wheel::above(hub, &below(ground, wheel, hub)?);
             let deflection_m = 0.5 * wheel.tyre.diameter_m - height_m - wheel.sinkage_m;
             let load_n = (wheel.stiffness_n_m * deflection_m).max(0.0);
-            (wheel.touch.load_n, wheel.touch.deflection_m, wheel.touch.height_m) = (load_n, deflection_m, height_m);
+            (wheel.touch.load_n, wheel.touch.deflection_m, wheel.touch.height_m) =
+                (load_n, deflection_m, height_m);
             let point = hub - normal * height_m;
             force += normal * load_n;
             moment += (point - centre).cross(normal * load_n);
@@ -83,10 +90,11 @@ pub(crate) fn stand(
             return Ok(Pose::from_parts(origin, turn));
         }
         let [rise, roll, pitch] = solved(stiff, off);
-        let turned = roll.hypot(pitch);
-        if !(rise.is_finite() && turned < 1.0) {
+        if !(rise.is_finite() && roll.is_finite() && pitch.is_finite() && axes[2].z > LEANING) {
             return Err(BodyError::NoRest);
         }
+        let longest = (rise / FURTHEST_M).abs().max(roll.hypot(pitch) / FURTHEST_RAD).max(1.0);
+        let [rise, roll, pitch] = [rise, roll, pitch].map(|part| part / longest);
         origin += axes[2] * rise;
         turn = (turn * Rotation::from_scaled_axis(Vector::new(roll, pitch, 0.0))).normalize();
     }

@@ -46,8 +46,9 @@ impl Steer {
             }
             SteeringMode::All | SteeringMode::Crab { .. } => {
                 let all: Vec<f64> = axles.list().iter().map(|axle| axle.position_m).collect();
-                let (first, last) =
-                    all.iter().fold((f64::NEG_INFINITY, f64::INFINITY), |(most, least), x| (x.max(most), x.min(least)));
+                let (first, last) = all
+                    .iter()
+                    .fold((f64::NEG_INFINITY, f64::INFINITY), |(most, least), x| (x.max(most), x.min(least)));
                 (0.5 * (first + last), vec![true; all.len()])
             }
         };
@@ -83,7 +84,8 @@ impl Steer {
             SteeringMode::Crab { .. } => (2.0 * aim.off_rad / far_m, aim.left_m.atan2(aim.ahead_m)),
         };
         let most = rate_rad_s * step_s;
-        let toward = |is: f64, wanted: f64| is + (wanted.clamp(-limit_rad, limit_rad) - is).clamp(-most, most);
+        let toward =
+            |is: f64, wanted: f64| is + (wanted.clamp(-limit_rad, limit_rad) - is).clamp(-most, most);
         self.turned_rad = toward(self.turned_rad, (self.lever_m * curvature).atan());
         self.aslant_rad = toward(self.aslant_rad, aslant_rad);
     }

@@ -45,11 +45,8 @@ impl<'a> Track<'a> {
         // Behind its end the path goes on straight.
         let beyond_m = (wanted_m - end_m).max(0.0);
         let (sin, cos) = place.heading_rad.sin_cos();
-        let to = Vector::new(
-            place.east_m + beyond_m * sin - from.x,
-            place.north_m + beyond_m * cos - from.y,
-            0.0,
-        );
+        let to =
+            Vector::new(place.east_m + beyond_m * sin - from.x, place.north_m + beyond_m * cos - from.y, 0.0);
         let yaw_rad = ahead.y.atan2(ahead.x);
         let off_rad = yaw_of(place.heading_rad) + aslant_rad - yaw_rad;
         Aim { ahead_m: to.dot(ahead), left_m: to.dot(left), off_rad: (off_rad + PI).rem_euclid(TAU) - PI }

@@ -188,7 +188,9 @@ impl Wheel<'_> {
     /// Force of the ground on the vehicle [N], where a part `way` of the resistance acts.
     pub fn force_n(&self, way: f64) -> Vector {
         let Touch { normal, along, across, load_n, .. } = self.touch;
-        normal * load_n + along * (self.felt.gross_n - way * self.felt.resistance_n) + across * self.felt.side_n
+        normal * load_n
+            + along * (self.felt.gross_n - way * self.felt.resistance_n)
+            + across * self.felt.side_n
     }
 
     /// Energy in its tyres [J].

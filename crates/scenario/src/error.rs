@@ -1,6 +1,7 @@
 //! What can be wrong with a scenario, and how it is told.
 
 pub use crate::location::Location;
+use headland_body::BodyError;
 use headland_units::QuantityError;
 use std::path::PathBuf;
 
@@ -83,6 +84,14 @@ pub enum ScenarioError {
         /// Where.
         at: Location,
     },
+    /// A vehicle that cannot be driven as a rigid body.
+    #[error("{error}")]
+    Body {
+        /// Why.
+        error: BodyError,
+        /// Where.
+        at: Location,
+    },
     /// A dotted path that leads nowhere.
     #[error("the scenario has nothing at `{path}`")]
     NoSuchPath {
@@ -102,6 +111,7 @@ impl ScenarioError {
             | Self::UnknownField { at, .. }
             | Self::MissingField { at, .. }
             | Self::UnknownName { at, .. }
+            | Self::Body { at, .. }
             | Self::Value { at, .. } => Some(at),
         }
     }

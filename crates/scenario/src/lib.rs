@@ -9,6 +9,9 @@ mod assembled;
 mod axles;
 #[cfg(test)]
 mod axles_tests;
+mod body;
+#[cfg(test)]
+mod body_tests;
 mod candidate;
 mod cycle;
 #[cfg(test)]
@@ -29,6 +32,7 @@ mod tree;
 mod until;
 
 pub use assembled::Piece;
+pub use body::Fidelity;
 pub use candidate::{Candidate, CandidateField};
 pub use document::Document;
 pub use error::{Location, ScenarioError};

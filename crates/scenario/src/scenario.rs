@@ -1,6 +1,7 @@
 //! A scenario that was read and checked, and the models that it stands for.
 
 use crate::axles::axles;
+use crate::body::{Fidelity, fidelity};
 use crate::candidate::{Candidate, candidates};
 use crate::cycle::cycle;
 use crate::document::Document;
@@ -25,6 +26,8 @@ pub struct Scenario {
     pub vehicle_name: Option<String>,
     /// How it is driven; `None` where it only replays recordings.
     pub cycle: Option<Cycle>,
+    /// What simulates it.
+    pub fidelity: Fidelity,
     /// How recordings drive it.
     pub replay: ReplaySettings,
     /// Effects that a diagnosis tries beside those it knows.
@@ -130,6 +133,7 @@ impl Scenario {
             &mut remarks,
         )?;
         let cycle = cycle(&document, &file, &folder, &built)?;
+        let fidelity = fidelity(&document, &file, &built, cycle.as_ref())?;
         let replay = replay_settings(&file);
         let free = free(&document, &file)?;
         let runs = runs(&document)?;
@@ -137,6 +141,7 @@ impl Scenario {
             about: file.about,
             vehicle_name: file.vehicle.name,
             cycle,
+            fidelity,
             replay,
             candidates: candidates(&document),
             free,
@@ -214,7 +219,7 @@ fn parse(document: &Document) -> Result<ScenarioFile, ScenarioError> {
 }
 
 /// Bounds of the scenario's own numbers.
-const BOUNDS: [(&str, Bound); 19] = [
+const BOUNDS: [(&str, Bound); 20] = [
     ("vehicle.mass_kg", Bound::Positive),
     ("vehicle.rotating_mass_kg", Bound::NotNegative),
     ("vehicle.drag_area_m2", Bound::NotNegative),
@@ -232,6 +237,7 @@ const BOUNDS: [(&str, Bound); 19] = [
     ("gravity_m_s2", Bound::Positive),
     ("simulation.step_s", Bound::Within(1e-6, LONGEST_STEP_S)),
     ("simulation.longest_s", Bound::Positive),
+    ("simulation.fidelity.record_s", Bound::Positive),
     ("replay.window_s", Bound::Positive),
     ("replay.smoothing_s", Bound::Positive),
 ];

@@ -1,6 +1,7 @@
 //! The fields of a scenario. Plugins stand as [`Any`]: the registry reads them from the same text.
 
 use crate::axles::AxleFile;
+use crate::body::BodyFile;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use std::collections::BTreeMap;
@@ -53,6 +54,7 @@ pub struct VehicleFile {
     pub centre_of_gravity_height_m: Option<f64>,
     pub hitch_height_m: Option<f64>,
     pub slip_limit: Option<f64>,
+    pub body: Option<BodyFile>,
     #[allow(dead_code, reason = "read by the registry")]
     pub driveline: Any,
     #[allow(dead_code, reason = "read by the registry")]
@@ -155,13 +157,14 @@ pub struct RunFile {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "simulation")]
 pub struct SimulationFile {
-    #[allow(dead_code, reason = "there is one so far")]
-    pub fidelity: Fidelity,
+    pub fidelity: FidelityFile,
     pub step_s: f64,
     pub longest_s: Option<f64>,
 }
 
-#[derive(Debug, Deserialize)]
-pub enum Fidelity {
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename = "fidelity")]
+pub enum FidelityFile {
     Longitudinal,
+    RigidBody { record_s: f64 },
 }

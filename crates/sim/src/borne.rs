@@ -36,7 +36,9 @@ impl<'a> Machine<'a> {
     /// The balance where the carriage stands.
     #[inline(never)]
     pub(crate) fn borne_instant(&mut self, control: &impl Control) -> Instant {
-        let Some(carriage) = self.carriage.take() else { unreachable!("it is asked of machines on a carriage") };
+        let Some(carriage) = self.carriage.take() else {
+            unreachable!("it is asked of machines on a carriage")
+        };
         let motion = carriage.motion();
         let y = std::mem::take(&mut self.y);
         let mut slope = std::mem::take(&mut self.slopes[0]);
@@ -88,7 +90,9 @@ impl<'a> Machine<'a> {
     /// there to within the change of acceleration along it.
     #[inline(never)]
     pub(crate) fn borne_step(&mut self, step_s: f64, event: &dyn Fn(&Moment) -> f64) -> f64 {
-        let Some(mut carriage) = self.carriage.take() else { unreachable!("it is asked of machines on a carriage") };
+        let Some(mut carriage) = self.carriage.take() else {
+            unreachable!("it is asked of machines on a carriage")
+        };
         let taken = self.foreseen(step_s, carriage.motion().acceleration_m_s2.unwrap_or(0.0), event);
         let stepped = carriage.advance(&self.borne.push, taken);
         for (value, rate) in self.y.iter_mut().zip(&self.slopes[0]).skip(FIRST_STATE) {

@@ -99,7 +99,11 @@ impl Recorder {
             idle: Some(f64::NAN),
             values: Vec::new(),
         };
-        Self { time_s: Vec::new(), columns: names.into_iter().enumerate().map(column).collect(), row: Vec::new() }
+        Self {
+            time_s: Vec::new(),
+            columns: names.into_iter().enumerate().map(column).collect(),
+            row: Vec::new(),
+        }
     }
 
     pub fn last_time_s(&self) -> Option<f64> {

@@ -16,15 +16,6 @@ fn a_coast_down_on_level_ground_stops_when_and_where_the_longitudinal_one_does()
     let cycle = cycle(30.0 / 3.6, coast_down(), STEP_S);
     let (one, three) = (simulate(&model, &cycle).unwrap(), run(&model, &cycle));
     assert_eq!(three.end, End::Finished);
-    eprintln!(
-        "time {} {}; way {} {}; ledger {:?} {}",
-        one.trace.duration_s(),
-        three.trace.duration_s(),
-        last(&one, "position_m"),
-        last(&three, "position_m"),
-        three.ledger,
-        three.ledger.relative_residual()
-    );
     assert!((three.trace.duration_s() / one.trace.duration_s() - 1.0).abs() < 2e-3);
     assert!((last(&three, "position_m") / last(&one, "position_m") - 1.0).abs() < 2e-3);
     assert!(three.ledger.relative_residual() < 1e-3);

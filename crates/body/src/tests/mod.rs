@@ -2,6 +2,7 @@
 
 mod against_longitudinal;
 mod standing;
+mod swinging;
 
 use crate::{AxleBody, Chassis, Differential, Steering, SteeringMode, simulate};
 use headland_plugin::{Air, Driveline, Soil, Terrain, Tyre};
@@ -43,12 +44,7 @@ pub fn chassis() -> Chassis {
         yaw_inertia_kg_m2: 33_000.0,
         hitch_position_m: -3.2,
         payload: None,
-        steering: Steering {
-            mode: SteeringMode::Front,
-            limit_rad: 0.6,
-            rate_rad_s: 0.5,
-            look_ahead_m: 5.0,
-        },
+        steering: Steering { mode: SteeringMode::Front, limit_rad: 0.6, rate_rad_s: 0.5, look_ahead_m: 5.0 },
         centre: Differential::Locked,
         axles: vec![axle; 2],
     }

@@ -1,1 +1,157 @@
-//! Static loads.
+//! How the vehicle stands: loads by the lever rule, on the level, on slopes and under forces.
+
+use super::{GRAVITY, MASS_KG, channel, chassis, coast_down, cycle, last, model, run, soil, terrain};
+use crate::rig::Rig;
+use crate::{BodyError, simulate};
+use headland_plugin::{Place, Spot, Surface, Terrain};
+use headland_sim::{Carriage, End, Phase, Start, Until};
+use headland_soil::Constant;
+use headland_terrain::{ConstantGrade, Flat};
+
+fn at_rest() -> Start {
+    Start { position_m: 0.0, speed_m_s: 0.0 }
+}
+
+fn stand() -> Vec<Phase> {
+    vec![Phase::Stand { until: Until::Elapsed(15.0) }]
+}
+
+/// Axles 1.6 m ahead and 2.0 m behind: 2.0 / 3.6 of the weight in front.
+#[test]
+fn axles_share_the_weight_by_the_lever() {
+    let model = model(terrain::<Flat>("()"), soil::<Constant>("(coefficient: 0.07)"));
+    let chassis = chassis();
+    let rig = Rig::new(&model, &chassis, at_rest(), 2e-3).unwrap();
+    let weight_n = MASS_KG * GRAVITY;
+    assert!((rig.axle(0).load_n / (weight_n * 2.0 / 3.6) - 1.0).abs() < 1e-9);
+    assert!((rig.axle(1).load_n / (weight_n * 1.6 / 3.6) - 1.0).abs() < 1e-9);
+}
+
+/// Uphill by q, braked: W cos θ (l_r − h tan θ) / l in front, h to the ground. Tyres give way to the slope by some
+/// millimetres, which turns the body: so to a hundredth of the transfer.
+#[test]
+fn a_slope_moves_load_to_the_lower_axle_by_its_height() {
+    let model = model(terrain::<ConstantGrade>("(grade: 0.2)"), soil::<Constant>("(coefficient: 0.07)"));
+    let outcome = run(&model, &cycle(0.0, stand(), 2e-3));
+    assert_eq!(outcome.end, End::Finished);
+    let weight_n = MASS_KG * GRAVITY;
+    let cos = 1.0 / 0.2f64.hypot(1.0);
+    let transfer_n = weight_n * cos * 0.2 * 1.3 / 3.6;
+    let expected = [weight_n * cos * 2.0 / 3.6 - transfer_n, weight_n * cos * 1.6 / 3.6 + transfer_n];
+    for (axle, expected) in ["axle_1_load_n", "axle_2_load_n"].iter().zip(expected) {
+        let found = last(&outcome, axle);
+        assert!((found - expected).abs() < 0.015 * transfer_n, "{axle}: {found} {expected}");
+    }
+    assert!(last(&outcome, "position_m").abs() < 0.02, "it stands: {}", last(&outcome, "position_m"));
+}
+
+/// A coast-down at a = F / m_eff takes m a h from the rear to the front, less what the wheels' spin gives back and what
+/// resists ahead of the hubs is left out: by hand (m_eff = m + 900): m a h / l, and 900 a r / l more.
+#[test]
+fn braking_moves_load_to_the_front_by_hand() {
+    let model = model(terrain::<Flat>("()"), soil::<Constant>("(coefficient: 0.07)"));
+    let outcome = run(&model, &cycle(8.0, coast_down(), 2e-3));
+    let loads = channel(&outcome, "axle_1_load_n");
+    let speeds = channel(&outcome, "speed_m_s");
+    let slow: Vec<usize> = (0..loads.len()).filter(|row| (0.5..3.0).contains(&speeds[*row])).collect();
+    let mean = slow.iter().map(|row| loads[*row]).sum::<f64>() / slow.len() as f64;
+    let weight_n = MASS_KG * GRAVITY;
+    let slowing = 0.07 * weight_n / (MASS_KG + 900.0);
+    // The wheels' own momentum goes through the ground at the height of nothing, and turns the body by its spin.
+    let transfer_n = (MASS_KG * slowing * 1.3 + 900.0 * slowing * 0.98) / 3.6;
+    let found_n = mean - weight_n * 2.0 / 3.6;
+    assert!((found_n / transfer_n - 1.0).abs() < 0.02, "{found_n} {transfer_n}");
+}
+
+/// A surface that falls away to the right.
+#[derive(Debug)]
+pub struct Side {
+    pub rise_west: f64,
+}
+
+impl Surface for Side {
+    fn spot(&self, east_m: f64, _: f64) -> Option<Spot> {
+        Some(Spot { height_m: -self.rise_west * east_m, rise_east: -self.rise_west, rise_north: 0.0 })
+    }
+}
+
+impl Terrain for Side {
+    fn at(&self, position_m: f64) -> Place {
+        Place { north_m: position_m, ..Place::default() }
+    }
+
+    fn surface(&self) -> Option<&dyn Surface> {
+        Some(self)
+    }
+}
+
+/// On a side slope the lower wheels carry W (cos β / 2 + h sin β / t).
+#[test]
+fn a_side_slope_moves_load_to_the_lower_wheels() {
+    let model = model(Box::new(Side { rise_west: 0.2 }), soil::<Constant>("(coefficient: 0.07)"));
+    let outcome = run(&model, &cycle(0.0, stand(), 2e-3));
+    assert_eq!(outcome.end, End::Finished);
+    let (weight_n, cos) = (MASS_KG * GRAVITY, 1.0 / 0.2f64.hypot(1.0));
+    let lower: f64 =
+        ["axle_1_right_load_n", "axle_2_right_load_n"].iter().map(|name| last(&outcome, name)).sum();
+    let transfer_n = weight_n * cos * 0.2 * 1.3 / 2.1;
+    // Tyres that give way lean the body by φ = transfer t / k_φ, and its weight h − r further out: wheels lean with it and
+    // stay above the ground that they press.
+    let stiffness = 1e6 / (0.365 + 170.0 / 150.0);
+    let roll_stiffness = 4.0 * stiffness * 1.05 * 1.05;
+    let hub_m = 0.5 * 2.045 - 0.25 * weight_n / stiffness;
+    let leaning = 1.0 / (1.0 - weight_n * cos * (1.3 - hub_m) / roll_stiffness);
+    let expected_n = 0.5 * weight_n * cos + transfer_n * leaning;
+    assert!((lower - expected_n).abs() < 2e-3 * transfer_n, "{lower} {expected_n}");
+    assert!(last(&outcome, "roll_rad") > 0.2, "leans to the right");
+}
+
+/// A cliff behind the origin, higher than a wheel.
+#[derive(Debug)]
+struct Cliff(f64);
+
+impl Surface for Cliff {
+    fn spot(&self, _: f64, north_m: f64) -> Option<Spot> {
+        let height_m = if north_m > 1.0 { self.0 } else { 0.0 };
+        (north_m < 30.0).then_some(Spot { height_m, ..Spot::default() })
+    }
+}
+
+impl Terrain for Cliff {
+    fn at(&self, position_m: f64) -> Place {
+        Place { north_m: position_m, ..Place::default() }
+    }
+
+    fn surface(&self) -> Option<&dyn Surface> {
+        Some(self)
+    }
+}
+
+#[test]
+fn a_map_that_ends_is_told_with_the_wheel_and_the_trace_is_kept() {
+    let model = model(Box::new(Cliff(0.0)), soil::<Constant>("(coefficient: 0.02)"));
+    let outcome = run(&model, &cycle(6.0, coast_down(), 2e-3));
+    let End::Stopped { position_m, reason, .. } = &outcome.end else { panic!("{:?}", outcome.end) };
+    assert!(reason.contains("wheel of axle 1 comes to the edge of the map"), "{reason}");
+    assert!((position_m - 28.4).abs() < 0.02 && outcome.trace.len() > 1000, "{position_m}");
+}
+
+#[test]
+fn a_start_beyond_the_map_or_on_ground_that_nothing_stands_on_is_refused() {
+    let far = model(Box::new(Cliff(0.0)), soil::<Constant>("(coefficient: 0.02)"));
+    let start = Start { position_m: 40.0, speed_m_s: 0.0 };
+    let chassis = chassis();
+    let told = Rig::new(&far, &chassis, start, 2e-3).unwrap_err();
+    assert!(matches!(told, BodyError::OffTheMap { .. }), "{told}");
+    let cliff = model(Box::new(Cliff(9.0)), soil::<Constant>("(coefficient: 0.02)"));
+    let told = Rig::new(&cliff, &chassis, at_rest(), 2e-3).unwrap_err();
+    assert!(matches!(told, BodyError::BelowGround { .. } | BodyError::NoRest), "{told}");
+}
+
+#[test]
+fn a_step_that_is_too_long_is_refused_before_it_blows_up() {
+    let model = model(terrain::<Flat>("()"), soil::<Constant>("(coefficient: 0.07)"));
+    let cycle = cycle(8.0, coast_down(), 0.2);
+    let told = simulate(&model, &chassis(), &cycle, 0.0).unwrap_err().to_string();
+    assert!(told.contains("`step_s` is 0.2, expected at most"), "{told}");
+}

@@ -9,7 +9,7 @@ use crate::picture;
 use crate::say::Say;
 use headland_plugin::Registry;
 use headland_scenario::{Remark, RunSpec, Scenario};
-use headland_sim::{Driven, End, Ledger, Outcome, simulate};
+use headland_sim::{Driven, End, Ledger, Outcome};
 use headland_trace::Run;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -113,8 +113,10 @@ fn simulate_one(
     let Some(cycle) = &scenario.cycle else {
         return Err(Failure::Input(format!("run {} has no cycle", spec.id)));
     };
-    let outcome =
-        simulate(&scenario.model(registry)?, cycle).map_err(|error| Failure::Machine(error.to_string()))?;
+    let outcome = scenario
+        .fidelity
+        .simulate(&scenario.model(registry)?, cycle)
+        .map_err(|error| Failure::Machine(error.to_string()))?;
     if !outcome.ledger.turnover_j().is_finite() {
         return Err(Failure::Input(format!(
             "run `{}`: its energies are no finite numbers; look at the parameters of {}",
@@ -164,8 +166,11 @@ pub fn told_remark(remark: &Remark) -> String {
 fn told(scenario: &Scenario, summary: &Summary, took_ms: f64, output: &Output) -> String {
     let steps: usize = summary.runs.iter().map(|run| run.steps).sum();
     let step_ms = 1e3 * scenario.cycle.as_ref().map_or(0.0, |cycle| cycle.step_s);
-    let mut text =
-        format!("{}\n  longitudinal, {step_ms} ms, {steps} steps in {took_ms:.1} ms\n", scenario.about);
+    let mut text = format!(
+        "{}\n  {}, {step_ms} ms, {steps} steps in {took_ms:.1} ms\n",
+        scenario.about,
+        scenario.fidelity.told()
+    );
     for run in &summary.runs {
         let name = if summary.runs.len() > 1 { format!("{:<10} ", run.id) } else { String::new() };
         let _ = writeln!(

@@ -1,0 +1,228 @@
+//! The rigid body of a vehicle: read, checked, refused with its place.
+
+use crate::document::Document;
+use crate::error::ScenarioError;
+use crate::plugins::bounded;
+use crate::schema::{FidelityFile, ScenarioFile, VehicleFile};
+use headland_body::{
+    AxleBody, BodyError, Chassis, Differential, Payload, RunError, Steering, SteeringMode, check, simulate,
+};
+use headland_plugin::Bound;
+use headland_sim::{Cycle, Model, Outcome};
+use serde::Deserialize;
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename = "body")]
+pub struct BodyFile {
+    pub roll_inertia_kg_m2: f64,
+    pub pitch_inertia_kg_m2: f64,
+    pub yaw_inertia_kg_m2: f64,
+    pub hitch_position_m: f64,
+    pub payload: Option<PayloadFile>,
+    pub steering: SteeringFile,
+    pub centre: DifferentialFile,
+    pub axles: Vec<AxleBodyFile>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename = "payload")]
+pub struct PayloadFile {
+    pub position_m: f64,
+    pub height_m: f64,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename = "steering")]
+pub struct SteeringFile {
+    pub mode: ModeFile,
+    pub limit_rad: f64,
+    pub rate_rad_s: f64,
+    pub look_ahead_m: f64,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename = "steering mode")]
+pub enum ModeFile {
+    Front,
+    All,
+    Crab { angle_rad: f64 },
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename = "differential")]
+pub enum DifferentialFile {
+    Open,
+    Locked,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename = "axle of the body")]
+pub struct AxleBodyFile {
+    pub damping_n_s_m: f64,
+    pub friction: f64,
+    pub slip_stiffness: f64,
+    pub cornering_stiffness_per_rad: f64,
+    pub relaxation_length_m: f64,
+    pub differential: DifferentialFile,
+}
+
+/// What simulates a scenario.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Fidelity {
+    /// One degree of freedom along the path.
+    #[default]
+    Longitudinal,
+    /// A body on wheels over the surface.
+    RigidBody {
+        /// The body.
+        chassis: Box<Chassis>,
+        /// Between two rows of the trace [s].
+        record_s: f64,
+    },
+}
+
+impl Fidelity {
+    /// What it is, in words.
+    pub fn told(&self) -> &'static str {
+        match self {
+            Self::Longitudinal => "longitudinal",
+            Self::RigidBody { .. } => "rigid body",
+        }
+    }
+
+    /// Drives a model through a cycle.
+    ///
+    /// # Errors
+    /// [`RunError`] where a body cannot stand on its ground.
+    pub fn simulate(&self, model: &Model, cycle: &Cycle) -> Result<Outcome, RunError> {
+        match self {
+            Self::Longitudinal => Ok(headland_sim::simulate(model, cycle)?),
+            Self::RigidBody { chassis, record_s } => simulate(model, chassis, cycle, *record_s),
+        }
+    }
+}
+
+/// Bounds of the numbers of a body.
+const BOUNDS: [(&str, Bound); 9] = [
+    ("roll_inertia_kg_m2", Bound::Positive),
+    ("pitch_inertia_kg_m2", Bound::Positive),
+    ("yaw_inertia_kg_m2", Bound::Positive),
+    ("hitch_position_m", Bound::Within(-50.0, 50.0)),
+    ("payload.position_m", Bound::Within(-50.0, 50.0)),
+    ("payload.height_m", Bound::Within(0.0, 20.0)),
+    ("steering.limit_rad", Bound::Within(0.01, 1.5)),
+    ("steering.rate_rad_s", Bound::Positive),
+    ("steering.look_ahead_m", Bound::Positive),
+];
+
+/// Bounds of those of each of its axles.
+const AXLE_BOUNDS: [(&str, Bound); 5] = [
+    ("damping_n_s_m", Bound::NotNegative),
+    ("friction", Bound::Within(0.01, 3.0)),
+    ("slip_stiffness", Bound::Positive),
+    ("cornering_stiffness_per_rad", Bound::Positive),
+    ("relaxation_length_m", Bound::Within(0.01, 10.0)),
+];
+
+/// The body of a vehicle; `None` where it has none.
+fn chassis(document: &Document, vehicle: &VehicleFile) -> Result<Option<Chassis>, ScenarioError> {
+    let Some(body) = &vehicle.body else { return Ok(None) };
+    let bound = |path: &str, bound: Bound| -> Result<(), ScenarioError> {
+        let whole = format!("vehicle.body.{path}");
+        if let (Some(node), Some(value)) = (document.find(&whole), document.number(&whole)) {
+            let name = path.rsplit('.').next().unwrap_or(path);
+            bounded(document, name, value, bound, node.span.start)?;
+        }
+        Ok(())
+    };
+    BOUNDS.into_iter().try_for_each(|(path, limits)| bound(path, limits))?;
+    for index in 0..body.axles.len() {
+        AXLE_BOUNDS
+            .into_iter()
+            .try_for_each(|(path, limits)| bound(&format!("axles.{index}.{path}"), limits))?;
+    }
+    let differential = |file: DifferentialFile| match file {
+        DifferentialFile::Open => Differential::Open,
+        DifferentialFile::Locked => Differential::Locked,
+    };
+    Ok(Some(Chassis {
+        roll_inertia_kg_m2: body.roll_inertia_kg_m2,
+        pitch_inertia_kg_m2: body.pitch_inertia_kg_m2,
+        yaw_inertia_kg_m2: body.yaw_inertia_kg_m2,
+        hitch_position_m: body.hitch_position_m,
+        payload: body
+            .payload
+            .as_ref()
+            .map(|payload| Payload { position_m: payload.position_m, height_m: payload.height_m }),
+        steering: Steering {
+            mode: match body.steering.mode {
+                ModeFile::Front => SteeringMode::Front,
+                ModeFile::All => SteeringMode::All,
+                ModeFile::Crab { angle_rad } => SteeringMode::Crab { angle_rad },
+            },
+            limit_rad: body.steering.limit_rad,
+            rate_rad_s: body.steering.rate_rad_s,
+            look_ahead_m: body.steering.look_ahead_m,
+        },
+        centre: differential(body.centre),
+        axles: body
+            .axles
+            .iter()
+            .map(|axle| AxleBody {
+                damping_n_s_m: axle.damping_n_s_m,
+                friction: axle.friction,
+                slip_stiffness: axle.slip_stiffness,
+                cornering_stiffness_per_rad: axle.cornering_stiffness_per_rad,
+                relaxation_length_m: axle.relaxation_length_m,
+                differential: differential(axle.differential),
+            })
+            .collect(),
+    }))
+}
+
+/// The fidelity that a scenario asks for, checked with its model and its cycle.
+pub fn fidelity(
+    document: &Document,
+    file: &ScenarioFile,
+    model: &Model,
+    cycle: Option<&Cycle>,
+) -> Result<Fidelity, ScenarioError> {
+    let at = |path: &str| document.location(document.find(path).map_or(0, |node| node.span.start));
+    let lacks = |field: &str| ScenarioError::MissingField {
+        field: field.to_owned(),
+        of: "`vehicle` with `fidelity: RigidBody`".to_owned(),
+        at: at("vehicle"),
+    };
+    let chassis = chassis(document, &file.vehicle)?;
+    if let (Some(chassis), Some(axles)) = (&chassis, &model.axles) {
+        chassis.check(axles).map_err(|refusal| refused(document, &BodyError::Chassis(refusal)))?;
+    }
+    let FidelityFile::RigidBody { record_s } = file.simulation.fidelity else {
+        return Ok(Fidelity::Longitudinal);
+    };
+    if model.axles.is_none() {
+        return Err(lacks("axles"));
+    }
+    let chassis = chassis.ok_or_else(|| lacks("body"))?;
+    if let Some(cycle) = cycle {
+        check(model, &chassis, cycle).map_err(|error| refused(document, &error))?;
+    }
+    Ok(Fidelity::RigidBody { chassis: Box::new(chassis), record_s })
+}
+
+/// Where a scenario says what a body is refused for.
+fn refused(document: &Document, error: &BodyError) -> ScenarioError {
+    let path = match error {
+        BodyError::NoAxles => "vehicle".to_owned(),
+        BodyError::NotPositive { name, .. } => format!("vehicle.{name}"),
+        BodyError::Chassis(refusal) => format!("vehicle.body.{}", refusal.parameter),
+        BodyError::Step { .. } => "simulation.step_s".to_owned(),
+        BodyError::OffTheMap { .. } | BodyError::BelowGround { .. } | BodyError::NoRest => "start".to_owned(),
+        BodyError::NoSoil | BodyError::NoSurface { .. } => "ground.terrain".to_owned(),
+    };
+    let node = document.find(&path).or_else(|| document.find("ground.terrain"));
+    ScenarioError::Body {
+        error: error.clone(),
+        at: document.location(node.map_or(0, |node| node.span.start)),
+    }
+}

@@ -1,0 +1,86 @@
+//! Tests of the rigid body of a scenario.
+
+use crate::{Fidelity, Scenario};
+use std::path::Path;
+
+const GOOD: &str = r#"(
+    about: "a coast-down on four wheels",
+    vehicle: (
+        mass_kg: 13000, rotating_mass_kg: 900, drag_area_m2: 6,
+        axles: [
+            (position_m: 1.8, track_m: 2.1, wheels: 2, lead: 1, tyre: (
+                width_m: 0.9, diameter_m: 2.045, section_height_m: 0.54, inflation_pa: 1.5e5, carcass_pa: 0)),
+            (position_m: -1.8, track_m: 2.1, wheels: 2, lead: 1, tyre: (
+                width_m: 0.9, diameter_m: 2.045, section_height_m: 0.54, inflation_pa: 1.5e5, carcass_pa: 0)),
+        ],
+        centre_of_gravity_height_m: 1.3, hitch_height_m: 0.7, slip_limit: 0.5,
+        body: (
+            roll_inertia_kg_m2: 9e3, pitch_inertia_kg_m2: 32e3, yaw_inertia_kg_m2: 33e3, hitch_position_m: -3,
+            steering: (mode: Front, limit_rad: "35 deg", rate_rad_s: 0.5, look_ahead_m: 5),
+            centre: Locked,
+            axles: [
+                (damping_n_s_m: 6e3, friction: 0.8, slip_stiffness: 12, cornering_stiffness_per_rad: 6,
+                 relaxation_length_m: 0.7, differential: Open),
+                (damping_n_s_m: 6e3, friction: 0.8, slip_stiffness: 12, cornering_stiffness_per_rad: 6,
+                 relaxation_length_m: 0.7, differential: Open),
+            ],
+        ),
+        driveline: Neutral,
+    ),
+    ground: (terrain: Flat, soil: Constant(coefficient: 0.07)),
+    air: (density_kg_m3: 1.2),
+    start: (position_m: 0, speed_m_s: 5),
+    cycle: [Coast(until: Stopped)],
+    simulation: (fidelity: RigidBody(record_s: "50 ms"), step_s: 0.004),
+)"#;
+
+fn of(text: &str) -> Scenario {
+    Scenario::of_text("test.ron", text, Path::new(""), &headland_stock::registry())
+        .unwrap_or_else(|error| panic!("{}", error.told()))
+}
+
+fn told(from: &str, to: &str) -> String {
+    assert!(GOOD.contains(from), "{from}");
+    let text = GOOD.replacen(from, to, 1);
+    Scenario::of_text("test.ron", &text, Path::new(""), &headland_stock::registry()).unwrap_err().told()
+}
+
+#[test]
+fn one_word_changes_the_fidelity_and_nothing_else_does() {
+    let rigid = of(GOOD);
+    let Fidelity::RigidBody { record_s, .. } = rigid.fidelity else { panic!("{:?}", rigid.fidelity) };
+    assert_eq!(record_s, 0.05);
+    let flat = of(&GOOD.replace("RigidBody(record_s: \"50 ms\")", "Longitudinal"));
+    assert_eq!(flat.fidelity, Fidelity::Longitudinal);
+    let registry = headland_stock::registry();
+    let way = |scenario: &Scenario| {
+        let model = scenario.model(&registry).unwrap();
+        let outcome = scenario.fidelity.simulate(&model, scenario.cycle.as_ref().unwrap()).unwrap();
+        *outcome.trace.get("position_m").unwrap().last().unwrap()
+    };
+    assert!((way(&rigid) / way(&flat) - 1.0).abs() < 2e-3, "{} {}", way(&rigid), way(&flat));
+}
+
+#[test]
+fn what_the_body_lacks_is_told_where_it_should_stand() {
+    let start = GOOD.find("        body: (").unwrap();
+    let end = GOOD.find("        driveline: Neutral").unwrap();
+    let without = told(&GOOD[start..end], "");
+    assert!(without.contains("lacks the field `body`") && without.contains("RigidBody"), "{without}");
+    let lame = told(" hitch_position_m: -3,", "");
+    assert!(lame.contains("`body` lacks the field `hitch_position_m`"), "{lame}");
+}
+
+#[test]
+fn what_cannot_be_is_refused_where_it_stands() {
+    let step = told("step_s: 0.004", "step_s: 0.2");
+    assert!(step.contains("`step_s` is 0.2, expected at most") && step.contains("test.ron:29"), "{step}");
+    let inertia = told("roll_inertia_kg_m2: 9e3", "roll_inertia_kg_m2: 9e5");
+    assert!(inertia.contains("`roll_inertia_kg_m2` is 900000") && inertia.contains("other two"), "{inertia}");
+    let friction = told("friction: 0.8", "friction: -0.8");
+    assert!(friction.contains("`friction` is -0.8, expected 0.01 to 3"), "{friction}");
+    let weightless = told("mass_kg: 13000, rotating_mass_kg: 900", "mass_kg: 13000, rotating_mass_kg: 0");
+    assert!(weightless.contains("`rotating_mass_kg` is 0, expected more than 0"), "{weightless}");
+    let mass = told("mass_kg: 13000", "mass_kg: 0");
+    assert!(mass.contains("`mass_kg` is 0, expected more than 0"), "{mass}");
+}

@@ -64,18 +64,29 @@ pub(crate) struct Flow {
     pub cvt_ratio: f64,
 }
 
+/// Names of what is lost, as `deliver` gives it; that of the generator last, for those without one.
+const LOSSES: [&str; 7] =
+    ["engine heat", "transmission", "accessories", "motor", "battery", "battery charge", "generator"];
+/// The same with a supercapacitor.
+const LOSSES_OF_SUPERCAPACITOR: [&str; 7] = [
+    "engine heat",
+    "transmission",
+    "accessories",
+    "motor",
+    "supercapacitor",
+    "supercapacitor charge",
+    "generator",
+];
+
 /// How engine, machines and wheels hang together.
 pub(crate) trait Topology: Debug + Send + Sync {
     const CARD: Card;
-    /// Names of what it loses: engine heat, transmission, accessories, motor, store, charge, and the generator if there is one.
-    const LOSSES: &'static [&'static str];
-    /// The same with a supercapacitor.
-    const LOSSES_OF_SUPERCAPACITOR: &'static [&'static str];
+    /// Whether a generator is apart from the motor, which loses too.
+    const HAS_GENERATOR: bool;
 
     fn settle(&mut self) -> Result<(), Refusal>;
     fn engine(&self) -> &Engine;
     fn store(&self) -> &Store;
-    fn has_supercapacitor(&self) -> bool;
     fn consumers(&self) -> Consumers;
     fn coolant_c(&self) -> f64;
     fn own_states(&self) -> Vec<State>;
@@ -315,7 +326,9 @@ impl<T: Topology> Driveline for Managed<T> {
     }
 
     fn losses(&self) -> &'static [&'static str] {
-        if self.topology.has_supercapacitor() { T::LOSSES_OF_SUPERCAPACITOR } else { T::LOSSES }
+        let all: &[&str] =
+            if self.topology.store().is_supercapacitor { &LOSSES_OF_SUPERCAPACITOR } else { &LOSSES };
+        if T::HAS_GENERATOR { all } else { &all[..all.len() - 1] }
     }
 
     fn source(&self) -> &'static str {

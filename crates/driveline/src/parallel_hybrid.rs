@@ -66,10 +66,7 @@ impl Topology for Parallel {
         validity: "with a management; quasi-steady; leaves out starts of the engine, ageing and temperature of the battery",
         parameters: &PARAMETERS,
     };
-    const LOSSES: &'static [&'static str] =
-        &["engine heat", "transmission", "accessories", "motor", "battery", "battery charge"];
-    const LOSSES_OF_SUPERCAPACITOR: &'static [&'static str] =
-        &["engine heat", "transmission", "accessories", "motor", "supercapacitor", "supercapacitor charge"];
+    const HAS_GENERATOR: bool = false;
 
     fn settle(&mut self) -> Result<(), Refusal> {
         self.engine.settle()?;
@@ -86,10 +83,6 @@ impl Topology for Parallel {
 
     fn store(&self) -> &Store {
         &self.store
-    }
-
-    fn has_supercapacitor(&self) -> bool {
-        self.supercapacitor.is_some()
     }
 
     fn consumers(&self) -> Consumers {

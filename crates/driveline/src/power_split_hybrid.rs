@@ -95,17 +95,7 @@ impl Topology for PowerSplit {
                    temperature of the battery",
         parameters: &PARAMETERS,
     };
-    const LOSSES: &'static [&'static str] =
-        &["engine heat", "transmission", "accessories", "motor", "battery", "battery charge", "generator"];
-    const LOSSES_OF_SUPERCAPACITOR: &'static [&'static str] = &[
-        "engine heat",
-        "transmission",
-        "accessories",
-        "motor",
-        "supercapacitor",
-        "supercapacitor charge",
-        "generator",
-    ];
+    const HAS_GENERATOR: bool = true;
 
     fn settle(&mut self) -> Result<(), Refusal> {
         self.engine.settle()?;
@@ -129,10 +119,6 @@ impl Topology for PowerSplit {
 
     fn store(&self) -> &Store {
         &self.store
-    }
-
-    fn has_supercapacitor(&self) -> bool {
-        self.supercapacitor.is_some()
     }
 
     fn consumers(&self) -> Consumers {

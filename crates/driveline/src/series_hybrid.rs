@@ -76,17 +76,7 @@ impl Topology for Series {
         validity: "with a management; quasi-steady; leaves out starts of the engine, ageing and temperature of the battery",
         parameters: &PARAMETERS,
     };
-    const LOSSES: &'static [&'static str] =
-        &["engine heat", "transmission", "accessories", "motor", "battery", "battery charge", "generator"];
-    const LOSSES_OF_SUPERCAPACITOR: &'static [&'static str] = &[
-        "engine heat",
-        "transmission",
-        "accessories",
-        "motor",
-        "supercapacitor",
-        "supercapacitor charge",
-        "generator",
-    ];
+    const HAS_GENERATOR: bool = true;
 
     fn settle(&mut self) -> Result<(), Refusal> {
         self.engine.settle()?;
@@ -109,10 +99,6 @@ impl Topology for Series {
 
     fn store(&self) -> &Store {
         &self.store
-    }
-
-    fn has_supercapacitor(&self) -> bool {
-        self.supercapacitor.is_some()
     }
 
     fn consumers(&self) -> Consumers {

@@ -9,9 +9,10 @@
 //! P_f is the power of the fuel and P_b what is drawn from the store before its resistance. Needs no knowledge of the work
 //! ahead: a charge that falls makes the store dearer until it stays.
 
-use crate::ecms::{counted, may_switch, usual_levels, whole};
-use crate::least::cheapest;
-use headland_plugin::{Bound, Card, Management, Outlook, Plugin, Refusal, Share, State, Stores, parameter};
+use crate::least::{LEAST_TIME_S, LEVELS, TARGET_CHARGE, switched, usual_levels, whole_levels};
+use headland_plugin::{
+    Bound, Card, Consequence, Management, Outlook, Plugin, Refusal, Share, State, Stores, parameter,
+};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -45,21 +46,14 @@ impl Plugin for AdaptiveEcms {
             parameter("integral_gain_per_s", "1/s", "the same for each second that it is missing, k_i")
                 .must_be(Bound::NotNegative)
                 .usually(0.0, 1.0),
-            parameter("target_charge", "1", "charge that is kept, S_t")
-                .must_be(Bound::Within(0.0, 1.0))
-                .usually(0.3, 0.9),
-            parameter("levels", "1", "powers of the engine that are looked at in every step")
-                .must_be(Bound::Within(2.0, 1000.0))
-                .usually(5.0, 100.0)
-                .or(20.0),
-            parameter("least_time_s", "s", "the engine runs and rests at least so long")
-                .must_be(Bound::NotNegative)
-                .usually(0.0, 120.0),
+            TARGET_CHARGE,
+            LEVELS,
+            LEAST_TIME_S,
         ],
     };
 
     fn settle(&mut self, _: &Path) -> Result<(), Refusal> {
-        whole("levels", self.levels)
+        whole_levels(self.levels)
     }
 }
 
@@ -84,15 +78,9 @@ impl Management for AdaptiveEcms {
 
     fn share(&self, at: &dyn Stores, states: &mut [f64]) -> Share {
         let outlook = at.outlook();
-        let may = may_switch(&outlook, states[SINCE], self.least_time_s);
         let factor = self.factor(&outlook, states[MISSING]);
-        let share = cheapest(at, counted(self.levels), may, |consequence| {
-            consequence.fuel_w + factor * consequence.store_w
-        });
-        if share.engine_runs != outlook.engine_runs {
-            states[SINCE] = 0.0;
-        }
-        share
+        let price = |consequence: &Consequence| consequence.fuel_w + factor * consequence.store_w;
+        switched(at, self.levels, self.least_time_s, &mut states[SINCE], price)
     }
 
     fn flow(&self, outlook: &Outlook, _: &[f64], rates: &mut [f64]) {

@@ -10,7 +10,7 @@
 //! P_f is the power of the fuel and P_b what is drawn from the store before its resistance. The engine may stop; it runs
 //! and rests at least for t_least unless the store cannot do it.
 
-use crate::least::cheapest;
+use crate::least::{LEAST_TIME_S, LEVELS, TARGET_CHARGE, switched, usual_levels, whole_levels};
 use headland_plugin::{
     Bound, Card, Consequence, Management, Outlook, Plugin, Refusal, Share, State, Stores, parameter,
 };
@@ -47,16 +47,9 @@ impl Plugin for Ecms {
             parameter("equivalence_charge", "1", "fuel energy that stored energy is worth, s_chg")
                 .must_be(Bound::Positive)
                 .usually(1.5, 4.5),
-            parameter("target_charge", "1", "charge that is kept, S_t")
-                .must_be(Bound::Within(0.0, 1.0))
-                .usually(0.3, 0.9),
-            parameter("levels", "1", "powers of the engine that are looked at in every step")
-                .must_be(Bound::Within(2.0, 1000.0))
-                .usually(5.0, 100.0)
-                .or(20.0),
-            parameter("least_time_s", "s", "the engine runs and rests at least so long, t_least")
-                .must_be(Bound::NotNegative)
-                .usually(0.0, 120.0),
+            TARGET_CHARGE,
+            LEVELS,
+            LEAST_TIME_S,
         ],
     };
 
@@ -71,47 +64,14 @@ impl Plugin for Ecms {
                 ),
             });
         }
-        whole("levels", self.levels)
+        whole_levels(self.levels)
     }
-}
-
-/// Powers that are looked at where a scenario does not say how many.
-pub(crate) const fn usual_levels() -> f64 {
-    20.0
-}
-
-/// Refuses a number that does not count.
-pub(crate) fn whole(parameter: &str, value: f64) -> Result<(), Refusal> {
-    if value.fract() == 0.0 {
-        return Ok(());
-    }
-    Err(Refusal {
-        parameter: parameter.to_owned(),
-        found: value.to_string(),
-        expected: "a whole number".to_owned(),
-    })
-}
-
-/// The number of levels, which `settle` found to be whole and within its bound.
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "settled to be a small whole number"
-)]
-pub(crate) fn counted(levels: f64) -> usize {
-    levels as usize
 }
 
 /// p(S): above 1 where charge is missing.
-pub(crate) fn penalty(outlook: &Outlook, target: f64) -> f64 {
+fn penalty(outlook: &Outlook, target: f64) -> f64 {
     let (least, most) = outlook.window;
     1.0 - (2.0 * (outlook.state_of_charge - target) / (most - least)).powi(PENALTY_EXPONENT)
-}
-
-/// Whether the engine may stop, and whether it may start.
-pub(crate) fn may_switch(outlook: &Outlook, since_s: f64, least_s: f64) -> (bool, bool) {
-    let settled = since_s >= least_s;
-    (settled, settled || outlook.power_w > outlook.most_store_w.0)
 }
 
 impl Ecms {
@@ -129,12 +89,8 @@ impl Management for Ecms {
 
     fn share(&self, at: &dyn Stores, states: &mut [f64]) -> Share {
         let outlook = at.outlook();
-        let may = may_switch(&outlook, states[0], self.least_time_s);
-        let share = cheapest(at, counted(self.levels), may, |consequence| self.price(&outlook, consequence));
-        if share.engine_runs != outlook.engine_runs {
-            states[0] = 0.0;
-        }
-        share
+        let price = |consequence: &Consequence| self.price(&outlook, consequence);
+        switched(at, self.levels, self.least_time_s, &mut states[0], price)
     }
 
     fn flow(&self, _: &Outlook, _: &[f64], rates: &mut [f64]) {

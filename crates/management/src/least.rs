@@ -1,16 +1,75 @@
 //! The way to share the power that costs least, by looking at the ways there are.
 
-use headland_plugin::{Consequence, Outlook, Share, Stores};
+use headland_plugin::{Bound, Consequence, Outlook, Parameter, Refusal, Share, Stores, parameter};
 
 /// A watt that the wheels do not get costs this many watts of fuel: more than any way to serve it.
 pub(crate) const SHORT_COST: f64 = 100.0;
+
+/// The charge that is kept.
+pub(crate) const TARGET_CHARGE: Parameter = parameter("target_charge", "1", "charge that is kept, S_t")
+    .must_be(Bound::Within(0.0, 1.0))
+    .usually(0.3, 0.9);
+
+/// How closely is looked.
+pub(crate) const LEVELS: Parameter =
+    parameter("levels", "1", "powers of the engine that are looked at in every step")
+        .must_be(Bound::Within(2.0, 1000.0))
+        .usually(5.0, 100.0)
+        .or(usual_levels());
+
+/// How soon the engine may stop again, and start.
+pub(crate) const LEAST_TIME_S: Parameter =
+    parameter("least_time_s", "s", "the engine runs and rests at least so long, t_least")
+        .must_be(Bound::NotNegative)
+        .usually(0.0, 120.0);
+
+/// Powers that are looked at where a scenario does not say how many.
+pub(crate) const fn usual_levels() -> f64 {
+    20.0
+}
+
+/// Refuses a number of levels that does not count.
+pub(crate) fn whole_levels(levels: f64) -> Result<(), Refusal> {
+    if levels.fract() == 0.0 {
+        return Ok(());
+    }
+    Err(Refusal {
+        parameter: LEVELS.name.to_owned(),
+        found: levels.to_string(),
+        expected: "a whole number".to_owned(),
+    })
+}
+
+/// The cheapest sharing where the engine runs and rests for `least_s` at least, unless the store cannot do it; `since_s` is
+/// the time since it was last started or stopped.
+pub(crate) fn switched(
+    at: &dyn Stores,
+    levels: f64,
+    least_s: f64,
+    since_s: &mut f64,
+    price: impl Fn(&Consequence) -> f64,
+) -> Share {
+    let outlook = at.outlook();
+    let settled = *since_s >= least_s;
+    let may_start = settled || outlook.power_w > outlook.most_store_w.0;
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "settled to be a small whole number"
+    )]
+    let share = cheapest(at, levels as usize, (settled, may_start), price);
+    if share.engine_runs != outlook.engine_runs {
+        *since_s = 0.0;
+    }
+    share
+}
 
 /// Steps of golden section between two powers of the grid: 0.618¹⁰ narrows them to a hundredth.
 const NARROWINGS: usize = 10;
 
 /// The engine stopped, or at powers from nothing to its most and at that which leaves the store alone: the cheapest.
 /// `may_stop` and `may_start` say whether the engine may change.
-pub(crate) fn cheapest(
+fn cheapest(
     at: &dyn Stores,
     levels: usize,
     (may_stop, may_start): (bool, bool),

@@ -65,6 +65,11 @@ impl Carriage {
     }
 }
 
+/// What carrying a payload takes: on a machine that comes along, or else on the vehicle itself.
+pub(crate) fn load(carriage: Option<&Carriage>, at: &Situation, payload_kg: f64) -> Load {
+    carriage.map_or(Load { mass_kg: payload_kg, ..Load::default() }, |carriage| carriage.load(at, payload_kg))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

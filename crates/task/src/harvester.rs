@@ -10,7 +10,7 @@
 //! g has the mean 1 over a bale, so that the table holds for the whole of it.
 //! It is filled by its work alone. A bale is let go by emptying.
 
-use crate::carriage::Carriage;
+use crate::carriage::{self, Carriage};
 use crate::payload;
 use crate::power_table::{Row, choose};
 use headland_plugin::{Bound, Card, Load, Mode, Plugin, Refusal, Situation, State, Task, parameter};
@@ -132,10 +132,7 @@ impl Task for Harvester {
 
     fn load_in(&self, mode: Mode, at: &Situation, states: &[f64], rates: &mut [f64]) -> Load {
         let m = states[PAYLOAD];
-        let mut load = match &self.carriage {
-            Some(carriage) => carriage.load(at, m),
-            None => Load { mass_kg: m, ..Load::default() },
-        };
+        let mut load = carriage::load(self.carriage.as_ref(), at, m);
         let v = at.speed_m_s.abs();
         rates.fill(0.0);
         rates[PAYLOAD] = self.payload_rate_kg_s(mode, v);

@@ -7,7 +7,7 @@
 //! What is spread leaves with the speed of the machine, so that it pushes neither way. A drill's tank, a sprayer and a
 //! fertiliser or manure spreader are such machines.
 
-use crate::carriage::Carriage;
+use crate::carriage::{self, Carriage};
 use crate::payload;
 use crate::power_table::{Row, choose};
 use headland_plugin::{Bound, Card, Load, Mode, Plugin, Refusal, Situation, State, Task, parameter};
@@ -98,10 +98,7 @@ impl Task for Spreader {
 
     fn load_in(&self, mode: Mode, at: &Situation, states: &[f64], rates: &mut [f64]) -> Load {
         let m = states[PAYLOAD];
-        let mut load = match &self.carriage {
-            Some(carriage) => carriage.load(at, m),
-            None => Load { mass_kg: m, ..Load::default() },
-        };
+        let mut load = carriage::load(self.carriage.as_ref(), at, m);
         rates[PAYLOAD] = self.payload_rate_kg_s(mode, at.speed_m_s);
         rates[AREA] = 0.0;
         match mode {

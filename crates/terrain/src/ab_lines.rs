@@ -9,17 +9,19 @@
 //! The turn is driven on one line, without reversing. The field is a plane that may be inclined. Marks: `turn` where a lane
 //! ends and its turn begins, `lane` where the next begins.
 
-use crate::marks::Marks;
+use crate::laid::{Laid, Line, Pattern};
 use crate::plane::{Incline, PlanePath};
-use headland_plugin::{Bound, Card, Place, Plugin, Refusal, Terrain, parameter};
+use headland_plugin::{Bound, Card, Refusal, parameter};
 use serde::Deserialize;
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::path::Path;
+
+/// Lanes up and down a plane field.
+pub type AbLines = Laid<UpAndDown>;
 
 /// Lanes and turns.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct AbLines {
+#[serde(deny_unknown_fields, rename = "AbLines")]
+pub struct UpAndDown {
     heading_rad: f64,
     length_m: f64,
     spacing_m: f64,
@@ -31,10 +33,6 @@ pub struct AbLines {
     grade: f64,
     #[serde(default)]
     uphill_rad: f64,
-    #[serde(skip)]
-    path: PlanePath,
-    #[serde(skip)]
-    marks: Marks,
 }
 
 /// On which side of a lane the next one lies, seen along the first.
@@ -44,7 +42,7 @@ enum Side {
     Right,
 }
 
-impl Plugin for AbLines {
+impl Pattern for UpAndDown {
     const CARD: Card = Card {
         name: "AbLines",
         about: "parallel lanes up and down a field with the turns between them; marks `turn` and `lane`",
@@ -76,7 +74,11 @@ impl Plugin for AbLines {
         ],
     };
 
-    fn settle(&mut self, _: &Path) -> Result<(), Refusal> {
+    fn incline(&self) -> Incline {
+        Incline { grade: self.grade, uphill_rad: self.uphill_rad }
+    }
+
+    fn line(&self) -> Result<Line, Refusal> {
         if self.lanes.fract() != 0.0 {
             return Err(Refusal {
                 parameter: "lanes".to_owned(),
@@ -85,8 +87,7 @@ impl Plugin for AbLines {
             });
         }
         let turn = Turn::between(self.spacing_m, self.turn_radius_m, self.turn_ramp_m);
-        self.path = PlanePath::heading(self.heading_rad);
-        self.marks = Marks::default();
+        let mut line = Line::heading(self.heading_rad);
         let mut way = if self.side == Side::Right { 1.0 } else { -1.0 };
         #[allow(
             clippy::cast_possible_truncation,
@@ -96,14 +97,14 @@ impl Plugin for AbLines {
         let lanes = self.lanes as u32;
         for lane in 0..lanes {
             if lane > 0 {
-                self.marks.set("turn", self.path.length_m());
-                turn.add(&mut self.path, way);
-                self.marks.set("lane", self.path.length_m());
+                line.mark("turn");
+                turn.add(&mut line.path, way);
+                line.mark("lane");
                 way = -way;
             }
-            self.path.go(self.length_m, 0.0, 0.0);
+            line.path.go(self.length_m, 0.0, 0.0);
         }
-        Ok(())
+        Ok(line)
     }
 }
 
@@ -173,28 +174,11 @@ fn bisect(falls: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     0.5 * (low + high)
 }
 
-impl Terrain for AbLines {
-    fn at(&self, position_m: f64) -> Place {
-        let plane = Incline { grade: self.grade, uphill_rad: self.uphill_rad };
-        plane.place(&self.path.at(position_m))
-    }
-
-    fn extent_m(&self) -> Option<(f64, f64)> {
-        Some((0.0, self.path.length_m()))
-    }
-
-    fn marks(&self) -> Vec<&str> {
-        self.marks.names()
-    }
-
-    fn next_mark_m(&self, name: &str, position_m: f64) -> Option<f64> {
-        self.marks.next_m(name, position_m)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use headland_plugin::{Plugin, Terrain};
+    use std::path::Path;
 
     fn lanes(spacing_m: f64, side: &str) -> AbLines {
         let mut field: AbLines = ron::from_str(&format!(
@@ -232,7 +216,7 @@ mod tests {
                     assert!((turned.abs() - PI).abs() < 1e-12, "{turned}");
                     end = turn;
                 }
-                assert_eq!(field.extent_m().unwrap().1, field.path.length_m());
+                assert_eq!(field.extent_m().unwrap().1, field.length_m());
                 assert_eq!(field.next_mark_m("turn", end), None);
             }
         }
@@ -243,7 +227,7 @@ mod tests {
         for spacing_m in [2.5, 13.0, 24.0] {
             let field = lanes(spacing_m, "Left");
             let (mut before, mut s) = (0.0, 0.0);
-            while s < field.path.length_m() {
+            while s < field.length_m() {
                 let curvature = field.at(s).curvature_per_m;
                 assert!(curvature.abs() <= 1.0 / 6.0 + 1e-12);
                 // σ = 1 / (6 · 3) per metre.
@@ -264,7 +248,7 @@ mod tests {
     #[test]
     fn half_a_lane_is_refused() {
         let mut field = lanes(3.0, "Left");
-        field.lanes = 2.5;
+        field.pattern.lanes = 2.5;
         assert_eq!(
             field.settle(Path::new(".")).unwrap_err().to_string(),
             "`lanes` is 2.5, expected a whole number"

@@ -6,7 +6,8 @@
 //! Source: definition of grade; AASHTO, *A Policy on Geometric Design of Highways and Streets* (2018), section 3.4.
 //! The path is straight and never ends.
 
-use headland_plugin::{Bound, Card, Place, Plugin, Terrain, parameter};
+use crate::plane::Incline;
+use headland_plugin::{Bound, Card, Place, Plugin, Spot, Surface, Terrain, parameter};
 use serde::Deserialize;
 
 /// A slope that is the same everywhere.
@@ -52,6 +53,17 @@ impl Terrain for ConstantGrade {
             north_m: s * cos_slope * cos,
         }
     }
+
+    fn surface(&self) -> Option<&dyn Surface> {
+        Some(self)
+    }
+}
+
+/// The plane that is as steep everywhere and level across the path.
+impl Surface for ConstantGrade {
+    fn spot(&self, east_m: f64, north_m: f64) -> Option<Spot> {
+        Incline { grade: self.grade, uphill_rad: self.heading_rad }.spot(east_m, north_m)
+    }
 }
 
 #[cfg(test)]
@@ -78,6 +90,14 @@ mod tests {
         let ground = ConstantGrade { grade: 0.1, heading_rad: 2.0 };
         let rise = ground.at(11.0).elevation_m - ground.at(10.0).elevation_m;
         assert!((rise - ground.at(10.0).sin_slope).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_path_lies_on_the_surface() {
+        let ground = ConstantGrade { grade: -0.3, heading_rad: 2.0 };
+        let place = ground.at(40.0);
+        let spot = ground.surface().unwrap().spot(place.east_m, place.north_m).unwrap();
+        assert!((spot.height_m - place.elevation_m).abs() < 1e-12);
     }
 
     #[test]

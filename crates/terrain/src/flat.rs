@@ -5,7 +5,8 @@
 //! Source: definition.
 //! The path is straight and never ends.
 
-use headland_plugin::{Card, Place, Plugin, Terrain, parameter};
+use crate::plane::Incline;
+use headland_plugin::{Card, Place, Plugin, Surface, Terrain, parameter};
 use serde::Deserialize;
 
 /// Level ground, and a straight path over it.
@@ -39,6 +40,11 @@ impl Terrain for Flat {
             north_m: position_m * cos,
             ..Place::default()
         }
+    }
+
+    fn surface(&self) -> Option<&dyn Surface> {
+        const LEVEL: &Incline = &Incline { grade: 0.0, uphill_rad: 0.0 };
+        Some(LEVEL)
     }
 }
 

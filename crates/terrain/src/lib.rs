@@ -6,6 +6,7 @@ mod curve;
 mod file;
 mod flat;
 mod gpx;
+mod laid;
 mod marks;
 mod plane;
 mod profile;

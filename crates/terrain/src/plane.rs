@@ -6,7 +6,7 @@
 //! most half a radian, which is exact to rounding.
 //! The plane may be inclined: positions count along the path on the slope, the map shows it foreshortened.
 
-use headland_plugin::Place;
+use headland_plugin::{Place, Spot, Surface};
 
 /// One piece.
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +71,15 @@ impl Incline {
             north_m: pose.north_m + shortened_m * cos,
             ..flat
         }
+    }
+}
+
+/// A plane through the origin, as the map shows it.
+impl Surface for Incline {
+    fn spot(&self, east_m: f64, north_m: f64) -> Option<Spot> {
+        let (sin, cos) = self.uphill_rad.sin_cos();
+        let (rise_east, rise_north) = (self.grade * sin, self.grade * cos);
+        Some(Spot { height_m: rise_east * east_m + rise_north * north_m, rise_east, rise_north })
     }
 }
 
@@ -225,5 +234,18 @@ mod tests {
         assert!((rise / step - one.sin_slope).abs() < 1e-4);
         let moved = (two.east_m - one.east_m).hypot(two.north_m - one.north_m).hypot(rise);
         assert!((moved / step - 1.0).abs() < 1e-6, "{moved}");
+    }
+
+    #[test]
+    fn the_path_lies_on_the_surface() {
+        let mut path = PlanePath::heading(0.4);
+        path.bend(2.0, 8.0, 3.0);
+        let plane = Incline { grade: 0.2, uphill_rad: 1.1 };
+        for s in [0.0, 4.0, 9.0, 15.0] {
+            let place = plane.place(&path.at(s));
+            let spot = plane.spot(place.east_m, place.north_m).unwrap();
+            assert!((spot.height_m - place.elevation_m).abs() < 1e-12, "{spot:?} {place:?}");
+            assert!((spot.rise_east.hypot(spot.rise_north) - 0.2).abs() < 1e-12);
+        }
     }
 }

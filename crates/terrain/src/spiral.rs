@@ -6,17 +6,19 @@
 //! It ends with the last side that still holds two corners, or after the rounds that are asked for. Marks: `corner` where a
 //! corner begins, `side` where it ends.
 
-use crate::marks::Marks;
+use crate::laid::{Laid, Line, Pattern};
 use crate::plane::{Incline, PlanePath};
-use headland_plugin::{Bound, Card, Place, Plugin, Refusal, Terrain, parameter};
+use headland_plugin::{Bound, Card, Refusal, parameter};
 use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
-use std::path::Path;
+
+/// A plane field worked around.
+pub type Spiral = Laid<Around>;
 
 /// Rounds that close in.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Spiral {
+#[serde(deny_unknown_fields, rename = "Spiral")]
+pub struct Around {
     heading_rad: f64,
     length_m: f64,
     breadth_m: f64,
@@ -29,13 +31,9 @@ pub struct Spiral {
     grade: f64,
     #[serde(default)]
     uphill_rad: f64,
-    #[serde(skip)]
-    path: PlanePath,
-    #[serde(skip)]
-    marks: Marks,
 }
 
-impl Plugin for Spiral {
+impl Pattern for Around {
     const CARD: Card = Card {
         name: "Spiral",
         about: "a field worked round and round from its edge inward; marks `corner` and `side`",
@@ -70,7 +68,11 @@ impl Plugin for Spiral {
         ],
     };
 
-    fn settle(&mut self, _: &Path) -> Result<(), Refusal> {
+    fn incline(&self) -> Incline {
+        Incline { grade: self.grade, uphill_rad: self.uphill_rad }
+    }
+
+    fn line(&self) -> Result<Line, Refusal> {
         let refuse = |parameter: &str, found: String, expected: String| Refusal {
             parameter: parameter.to_owned(),
             found,
@@ -93,8 +95,7 @@ impl Plugin for Spiral {
                 ));
             }
         }
-        self.path = PlanePath::heading(self.heading_rad);
-        self.marks = Marks::default();
+        let mut line = Line::heading(self.heading_rad);
         let (mut sides, mut driven) = ([self.length_m, self.breadth_m], 0_u32);
         while f64::from(driven) < 4.0 * self.rounds {
             let (first, which) = (driven == 0, (driven % 2) as usize);
@@ -104,43 +105,26 @@ impl Plugin for Spiral {
                 break;
             }
             if !first {
-                self.marks.set("corner", self.path.length_m());
-                self.path.bend(way * FRAC_PI_2, self.turn_radius_m, self.turn_ramp_m);
-                self.marks.set("side", self.path.length_m());
+                line.mark("corner");
+                line.path.bend(way * FRAC_PI_2, self.turn_radius_m, self.turn_ramp_m);
+                line.mark("side");
             }
-            self.path.go(straight_m, 0.0, 0.0);
+            line.path.go(straight_m, 0.0, 0.0);
             // The first side keeps its length once more: the third lies at the far edge.
             if !first {
                 sides[which] -= self.spacing_m;
             }
             driven += 1;
         }
-        Ok(())
-    }
-}
-
-impl Terrain for Spiral {
-    fn at(&self, position_m: f64) -> Place {
-        let plane = Incline { grade: self.grade, uphill_rad: self.uphill_rad };
-        plane.place(&self.path.at(position_m))
-    }
-
-    fn extent_m(&self) -> Option<(f64, f64)> {
-        Some((0.0, self.path.length_m()))
-    }
-
-    fn marks(&self) -> Vec<&str> {
-        self.marks.names()
-    }
-
-    fn next_mark_m(&self, name: &str, position_m: f64) -> Option<f64> {
-        self.marks.next_m(name, position_m)
+        Ok(line)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use headland_plugin::{Plugin, Terrain};
+    use std::path::Path;
 
     fn spiral(rounds: u32) -> Spiral {
         let mut field: Spiral = ron::from_str(&format!(
@@ -183,7 +167,7 @@ mod tests {
         assert!((end / 1200.0 - 1.0).abs() < 0.15, "{end}");
         assert!(end > spiral(2).extent_m().unwrap().1);
         let mut narrow = spiral(1);
-        narrow.breadth_m = 10.0;
+        narrow.pattern.breadth_m = 10.0;
         assert!(narrow.settle(Path::new(".")).unwrap_err().to_string().contains("two corners"));
     }
 }

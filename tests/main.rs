@@ -20,6 +20,8 @@ mod models;
 mod scenarios;
 #[path = "whole/snippets.rs"]
 mod snippets;
+#[path = "whole/terrains.rs"]
+mod terrains;
 #[path = "whole/wheels.rs"]
 mod wheels;
 

@@ -74,6 +74,17 @@ impl Pattern for UpAndDown {
         ],
     };
 
+    fn numbers(&self) -> Vec<(&'static str, f64)> {
+        vec![
+            ("heading_rad", self.heading_rad),
+            ("length_m", self.length_m),
+            ("spacing_m", self.spacing_m),
+            ("lanes", self.lanes),
+            ("turn_radius_m", self.turn_radius_m),
+            ("turn_ramp_m", self.turn_ramp_m),
+        ]
+    }
+
     fn incline(&self) -> Incline {
         Incline { grade: self.grade, uphill_rad: self.uphill_rad }
     }

@@ -1,33 +1,35 @@
-//! Tracks and waypoints of a GPX file, on a plane about the first point.
+//! Tracks and waypoints of a GPX file, on a plane about the first point or about one that is given.
 //!
-//! x = R_N cos φ₀ (λ − λ₀),  y = R_M (φ − φ₀)        R_N, R_M radii of curvature of the ellipsoid at φ₀
-//!
-//! Source: GPX 1.1 schema, Topografix; Snyder, *Map Projections: A Working Manual*, USGS Professional Paper 1395 (1987),
-//! page 24, for the radii; the ellipsoid is that of WGS 84.
-//! Good to some parts in ten thousand within 10 km.
+//! Source: GPX 1.1 schema, Topografix.
 
 use headland_plugin::Refusal;
+use headland_raster::plane;
 use std::path::Path;
 
 /// What a file holds.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Gpx {
-    /// East, north and height of each point [m]; all tracks and their segments, one after the other.
+    /// East, north and height of each point [m]; all tracks and their segments, one after the other. Heights that nobody
+    /// asked for are NaN.
     pub points: Vec<[f64; 3]>,
     /// Name, east and north of each waypoint [m].
     pub waypoints: Vec<(String, [f64; 2])>,
 }
 
-/// Half of the great axis of the ellipsoid [m], WGS 84.
-const SEMI_MAJOR_M: f64 = 6_378_137.0;
-/// Its flattening, WGS 84.
-const FLATTENING: f64 = 1.0 / 298.257_223_563;
+/// What is asked of a file.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Asked {
+    /// Its heights too; the plane lies about the first point.
+    Road,
+    /// The map alone, on a plane about this latitude and longitude [°].
+    Map(f64, f64),
+}
 
 /// Reads `folder/file`.
 ///
 /// # Errors
 /// [`Refusal`] of `file` says what was found, with its line.
-pub(crate) fn read(folder: &Path, file: &str) -> Result<Gpx, Refusal> {
+pub(crate) fn read(folder: &Path, file: &str, asked: Asked) -> Result<Gpx, Refusal> {
     let refuse = |found: String, expected: &str| Refusal {
         parameter: "file".to_owned(),
         found,
@@ -66,16 +68,21 @@ pub(crate) fn read(folder: &Path, file: &str) -> Result<Gpx, Refusal> {
             .map(str::to_owned)
     };
     let mut gpx = Gpx::default();
-    let mut origin: Option<(f64, f64)> = None;
+    let mut origin = match asked {
+        Asked::Road => None,
+        Asked::Map(latitude, longitude) => Some((latitude, longitude)),
+    };
     let kind = if tagged("trkpt").next().is_some() { "trkpt" } else { "rtept" };
     for node in tagged(kind) {
         let (latitude, longitude) = place(node)?;
         let [east, north] = plane(*origin.get_or_insert((latitude, longitude)), (latitude, longitude));
-        let height = child(node, "ele");
-        let height = number(node, "ele", height.as_deref(), 12_000.0)?;
+        let height = match asked {
+            Asked::Road => number(node, "ele", child(node, "ele").as_deref(), 12_000.0)?,
+            Asked::Map(..) => f64::NAN,
+        };
         gpx.points.push([east, north, height]);
     }
-    let Some(origin) = origin else {
+    let Some(origin) = origin.filter(|_| !gpx.points.is_empty()) else {
         return Err(refuse(
             format!("`{file}` without a point of a track or of a route"),
             "`trkpt` or `rtept`",
@@ -88,15 +95,6 @@ pub(crate) fn read(folder: &Path, file: &str) -> Result<Gpx, Refusal> {
     Ok(gpx)
 }
 
-/// East and north of a place [°] from an origin [m].
-fn plane(origin: (f64, f64), place: (f64, f64)) -> [f64; 2] {
-    let (sin, cos) = origin.0.to_radians().sin_cos();
-    let e2 = FLATTENING * (2.0 - FLATTENING);
-    let w = (1.0 - e2 * sin * sin).sqrt();
-    let (across, along) = (SEMI_MAJOR_M / w, SEMI_MAJOR_M * (1.0 - e2) / (w * w * w));
-    [across * cos * (place.1 - origin.1).to_radians(), along * (place.0 - origin.0).to_radians()]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -104,7 +102,7 @@ mod tests {
     fn read_text(text: &str) -> Result<Gpx, String> {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("x.gpx"), text).unwrap();
-        read(folder.path(), "x.gpx").map_err(|refusal| refusal.to_string())
+        read(folder.path(), "x.gpx", Asked::Road).map_err(|refusal| refusal.to_string())
     }
 
     const GOOD: &str = "<?xml version=\"1.0\"?>\n<gpx xmlns=\"http://www.topografix.com/GPX/1/1\" version=\"1.1\">\n\
@@ -121,6 +119,15 @@ mod tests {
         assert!((east - 78.85).abs() < 0.01 && (north - 111.13).abs() < 0.01, "{east} {north}");
         assert_eq!(height, 232.5);
         assert_eq!(gpx.waypoints[0].0, "yard");
+    }
+
+    #[test]
+    fn a_map_has_its_own_origin_and_needs_no_heights() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("x.gpx"), GOOD.replace("<ele>232.5</ele>", "")).unwrap();
+        let gpx = read(folder.path(), "x.gpx", Asked::Map(45.001, 7.0)).unwrap();
+        assert!((gpx.points[0][1] + 111.13).abs() < 0.01 && gpx.points[1][1] == 0.0, "{:?}", gpx.points);
+        assert_eq!(gpx.waypoints[0].1, [0.0, 0.0]);
     }
 
     #[test]

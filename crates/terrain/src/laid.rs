@@ -18,6 +18,9 @@ pub(crate) trait Pattern: Debug + Send + Sync {
     /// [`Refusal`] names a parameter that allows none.
     fn line(&self) -> Result<Line, Refusal>;
 
+    /// Its numbers by the names of its card, for where it is part of another terrain.
+    fn numbers(&self) -> Vec<(&'static str, f64)>;
+
     /// How the field lies.
     fn incline(&self) -> Incline;
 }

@@ -3,10 +3,13 @@
 mod ab_lines;
 mod constant_grade;
 mod curve;
+mod draped;
 mod file;
 mod flat;
 mod gpx;
+mod heightmap;
 mod laid;
+mod map_path;
 mod marks;
 mod plane;
 mod profile;
@@ -17,6 +20,7 @@ mod spline;
 pub use ab_lines::AbLines;
 pub use constant_grade::ConstantGrade;
 pub use flat::Flat;
+pub use heightmap::Heightmap;
 pub use profile::Profile;
 pub use route::Route;
 pub use spiral::Spiral;
@@ -31,4 +35,5 @@ pub fn register(registry: &mut Registry) {
     registry.terrain::<AbLines>();
     registry.terrain::<Spiral>();
     registry.terrain::<Route>();
+    registry.terrain::<Heightmap>();
 }

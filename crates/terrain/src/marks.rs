@@ -15,6 +15,14 @@ impl Marks {
         }
     }
 
+    /// The same marks where `place` puts them, in the same order.
+    pub fn moved(&self, place: impl Fn(f64) -> f64) -> Self {
+        let named = (self.named.iter())
+            .map(|(name, positions)| (name.clone(), positions.iter().map(|at| place(*at)).collect()))
+            .collect();
+        Self { named }
+    }
+
     /// Their names.
     pub fn names(&self) -> Vec<&str> {
         self.named.iter().map(|(name, _)| name.as_str()).collect()

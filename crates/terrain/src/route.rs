@@ -9,7 +9,7 @@
 //! nearest to them.
 
 use crate::curve::Curve;
-use crate::gpx;
+use crate::gpx::{self, Asked};
 use crate::marks::Marks;
 use crate::spline::Spline;
 use headland_plugin::{Bound, Card, Place, Plugin, Refusal, Terrain, parameter};
@@ -50,25 +50,9 @@ impl Plugin for Route {
     };
 
     fn settle(&mut self, folder: &Path) -> Result<(), Refusal> {
-        let refuse = |found: String, expected: &str| Refusal {
-            parameter: "file".to_owned(),
-            found: format!("`{}` {found}", self.file),
-            expected: expected.to_owned(),
-        };
-        let track = gpx::read(folder, &self.file)?;
-        let mut points: Vec<[f64; 3]> = Vec::new();
-        for point in track.points {
-            let far = |last: &[f64; 3]| (point[0] - last[0]).hypot(point[1] - last[1]) >= self.spacing_m;
-            if points.last().is_none_or(far) {
-                points.push(point);
-            }
-        }
-        if points.len() < 2 {
-            let found = format!("with {} points that are {} m apart", points.len(), self.spacing_m);
-            return Err(refuse(found, "two or more"));
-        }
-        let flat: Vec<[f64; 2]> = points.iter().map(|point| [point[0], point[1]]).collect();
-        self.path = Spline::through(&flat);
+        let track = gpx::read(folder, &self.file, Asked::Road)?;
+        let points = follow(&self.file, &track.points, self.spacing_m)?;
+        self.path = smooth(&points);
         let (mut heights, mut road_m, mut before): (Vec<(f64, f64)>, f64, _) = (Vec::new(), 0.0, None);
         for (map_m, point) in self.path.knots_m().zip(&points) {
             let step =
@@ -80,25 +64,69 @@ impl Plugin for Route {
         self.height = Curve::through(&heights);
         self.map_share = self.path.length_m() / self.height.at(road_m).horizontal;
         if let Some((at_m, slope)) = self.height.steepest().filter(|(_, slope)| slope.abs() >= 1.0) {
-            return Err(refuse(format!("rising {slope:.2} m per metre at {at_m:.0} m"), "less than 1"));
+            return Err(refuse(
+                &self.file,
+                &format!("rising {slope:.2} m per metre at {at_m:.0} m"),
+                "less than 1",
+            ));
         }
-        let mut marks = Vec::new();
-        for (name, place) in track.waypoints {
-            let (at_m, away_m) = nearest(&self.path, place);
-            if away_m > FARTHEST_MARK_M {
-                let found = format!("with the waypoint `{name}`, {away_m:.0} m from its track");
-                return Err(refuse(found, "waypoints within 50 m of it"));
-            }
-            // What the map shows shorter is as long on the road as the whole of it, which is near enough for a mark.
-            marks.push((at_m * road_m / self.path.length_m(), name));
-        }
-        marks.sort_by(|one, two| one.0.total_cmp(&two.0));
+        let marks = waypoints(&self.file, &self.path, track.waypoints)?;
         self.marks = Marks::default();
         for (at_m, name) in marks {
-            self.marks.set(&name, at_m);
+            // What the map shows shorter is as long on the road as the whole of it, which is near enough for a mark.
+            self.marks.set(&name, at_m * road_m / self.path.length_m());
         }
         Ok(())
     }
+}
+
+fn refuse(file: &str, found: &str, expected: &str) -> Refusal {
+    Refusal {
+        parameter: "file".to_owned(),
+        found: format!("`{file}` {found}"),
+        expected: expected.to_owned(),
+    }
+}
+
+/// The points of a track that are far enough apart.
+pub(crate) fn follow(file: &str, track: &[[f64; 3]], spacing_m: f64) -> Result<Vec<[f64; 3]>, Refusal> {
+    let mut points: Vec<[f64; 3]> = Vec::new();
+    for point in track {
+        let far = |last: &[f64; 3]| (point[0] - last[0]).hypot(point[1] - last[1]) >= spacing_m;
+        if points.last().is_none_or(far) {
+            points.push(*point);
+        }
+    }
+    if points.len() < 2 {
+        let found = format!("with {} points that are {spacing_m} m apart", points.len());
+        return Err(refuse(file, &found, "two or more"));
+    }
+    Ok(points)
+}
+
+/// The smooth line through points of a track on the map.
+pub(crate) fn smooth(points: &[[f64; 3]]) -> Spline {
+    let flat: Vec<[f64; 2]> = points.iter().map(|point| [point[0], point[1]]).collect();
+    Spline::through(&flat)
+}
+
+/// Where along the map each waypoint stands, in the order of the path.
+pub(crate) fn waypoints(
+    file: &str,
+    path: &Spline,
+    waypoints: Vec<(String, [f64; 2])>,
+) -> Result<Vec<(f64, String)>, Refusal> {
+    let mut marks = Vec::new();
+    for (name, place) in waypoints {
+        let (at_m, away_m) = nearest(path, place);
+        if away_m > FARTHEST_MARK_M {
+            let found = format!("with the waypoint `{name}`, {away_m:.0} m from its track");
+            return Err(refuse(file, &found, "waypoints within 50 m of it"));
+        }
+        marks.push((at_m, name));
+    }
+    marks.sort_by(|one, two| one.0.total_cmp(&two.0));
+    Ok(marks)
 }
 
 /// A waypoint that lies farther from the track belongs to another one.

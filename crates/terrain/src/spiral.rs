@@ -68,6 +68,18 @@ impl Pattern for Around {
         ],
     };
 
+    fn numbers(&self) -> Vec<(&'static str, f64)> {
+        vec![
+            ("heading_rad", self.heading_rad),
+            ("length_m", self.length_m),
+            ("breadth_m", self.breadth_m),
+            ("spacing_m", self.spacing_m),
+            ("rounds", self.rounds),
+            ("turn_radius_m", self.turn_radius_m),
+            ("turn_ramp_m", self.turn_ramp_m),
+        ]
+    }
+
     fn incline(&self) -> Incline {
         Incline { grade: self.grade, uphill_rad: self.uphill_rad }
     }

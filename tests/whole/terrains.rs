@@ -86,7 +86,7 @@ fn sum(waves: &[Wave], east: f64, north: f64) -> f64 {
 
 /// 500 m by 400 m of gentle hills: 24 waves of 120 m to 600 m, the longer the higher.
 fn rolling_field() -> Map {
-    let waves = waves(4, 24, 1.0 / 600.0, 1.0 / 120.0, |low, high| 3e-3 * (1.0 / low - 1.0 / high));
+    let waves = waves(4, 24, 1.0 / 600.0, 1.0 / 120.0, |low, high| 7e-3 * (1.0 / low - 1.0 / high));
     let heights_m = sampled(101, 81, 5.0, |east, north| 8.0 + sum(&waves, east, north));
     Map {
         file: "rolling_field.png",
@@ -140,6 +140,54 @@ fn rough_ground() -> Map {
         heights_m,
         range: Some((-0.5, 0.5)),
         step_m: 1.0 / 65_535.0,
+    }
+}
+
+/// Which soil lies on the rolling field: 1 where it is high, 2 in its hollows, else 0.
+fn soils_of_the_field() -> Vec<u8> {
+    let class = |height: &f64| if *height > 9.5 { 1 } else { 2 * u8::from(*height < 7.0) };
+    rolling_field().heights_m.iter().map(class).collect()
+}
+
+/// How moist it is, at every fifth sample: the lower the wetter, and wetter to the north.
+fn moisture_of_the_field() -> Vec<f64> {
+    let field = rolling_field();
+    let mut all = Vec::new();
+    for row in (0..81).step_by(5) {
+        for column in (0..101).step_by(5) {
+            let height = field.heights_m[row * 101 + column];
+            all.push(0.30 - 0.012 * (height - 8.0) + 0.03 * (row as f64 - 40.0) / 40.0);
+        }
+    }
+    all
+}
+
+/// `HEADLAND_WRITE=1` writes them anew.
+#[test]
+fn the_maps_of_soils_and_moisture_are_what_their_formulas_say() {
+    let folder = root().join("terrain");
+    let (soils, moisture) = ("rolling_field_soils.png", "rolling_field_moisture.asc");
+    if std::env::var_os("HEADLAND_WRITE").is_some() {
+        let bytes: Vec<u8> = soils_of_the_field().chunks_exact(101).rev().flatten().copied().collect();
+        let mut encoder = png::Encoder::new(std::fs::File::create(folder.join(soils)).unwrap(), 101, 81);
+        encoder.set_color(png::ColorType::Indexed);
+        encoder.set_depth(png::BitDepth::Eight);
+        // Colours for people: brown loam, pale sand, dark clay.
+        encoder.set_palette(vec![160, 120, 80, 225, 200, 150, 90, 80, 75]);
+        encoder.write_header().unwrap().write_image_data(&bytes).unwrap();
+        let mut text = "ncols 21\nnrows 17\nxllcenter 0\nyllcenter 0\ncellsize 25\n".to_owned();
+        for row in moisture_of_the_field().chunks_exact(21).rev() {
+            let row: Vec<String> = row.iter().map(|moisture| format!("{moisture:.3}")).collect();
+            let _ = writeln!(text, "{}", row.join(" "));
+        }
+        std::fs::write(folder.join(moisture), text).unwrap();
+    }
+    let picture = Picture { cell_m: 5.0, range: None };
+    let read = headland_raster::read(&folder, soils, Some(&picture)).unwrap();
+    assert!(read.values().iter().copied().eq(soils_of_the_field().into_iter().map(f64::from)));
+    let read = headland_raster::read(&folder, moisture, None).unwrap();
+    for (found, wanted) in read.values().iter().zip(moisture_of_the_field()) {
+        assert!((found - wanted).abs() < 5.1e-4, "{found} {wanted}");
     }
 }
 
@@ -235,9 +283,45 @@ fn the_maps_are_what_their_formulas_say() {
     }
 }
 
+/// Scenarios whose ground has a picture in `docs/pictures/terrain`.
+const PICTURES: [&str; 10] = [
+    "rolling_field",
+    "soils_from_a_map",
+    "through_the_valley",
+    "along_the_terrace",
+    "rough_ground",
+    "over_the_ridge",
+    "transport",
+    "ploughing",
+    "cultivating",
+    "mowing",
+];
+
+/// `HEADLAND_WRITE=1` draws them anew.
+#[test]
+fn the_pictures_show_the_ground_as_it_is() {
+    let registry = headland_stock::registry();
+    let draft = tempfile::tempdir().unwrap();
+    for name in PICTURES {
+        let kept = root().join(format!("docs/pictures/terrain/{name}.svg"));
+        let drawn = draft.path().join("ground.svg");
+        let scenario = root().join(format!("scenarios/{name}.ron"));
+        let words = ["headland", "terrain", scenario.to_str().unwrap(), "--picture", drawn.to_str().unwrap()];
+        let status = headland::run(&registry, words.map(std::ffi::OsString::from));
+        assert_eq!(format!("{status:?}"), format!("{:?}", std::process::ExitCode::SUCCESS), "{name}");
+        if std::env::var_os("HEADLAND_WRITE").is_some() {
+            std::fs::create_dir_all(kept.parent().unwrap()).unwrap();
+            std::fs::copy(&drawn, &kept).unwrap();
+        }
+        let same = std::fs::read(&drawn).unwrap() == std::fs::read(&kept).unwrap_or_default();
+        assert!(same, "{} is out of date; HEADLAND_WRITE=1 draws it anew", kept.display());
+        assert!(crate::read("docs/terrains.md").contains(&format!("pictures/terrain/{name}.svg")), "{name}");
+    }
+}
+
 #[test]
 fn what_is_driven_over_is_as_steep_as_farmland_is() {
-    for (map, most) in maps().iter().zip([0.10, 0.18, 0.45, 0.30]) {
+    for (map, most) in maps().iter().zip([0.15, 0.18, 0.45, 0.30]) {
         let smoothed = map.read().smoothed().unwrap();
         let bounds = smoothed.bounds();
         let mut steepest = 0.0_f64;

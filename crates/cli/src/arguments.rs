@@ -50,6 +50,8 @@ pub enum Command {
     Coastdown(CoastdownOptions),
     /// Run many variants, cycles and grounds and compare them
     Batch(BatchOptions),
+    /// Draw the ground of a scenario and the path over it
+    Terrain(TerrainOptions),
     /// A built-in example that needs no file
     Demo(DemoOptions),
     /// Make `docs/validation.md` from the published recordings
@@ -164,6 +166,17 @@ pub struct BatchOptions {
     /// Throw away what is finished in the folder and begin again
     #[arg(long)]
     pub anew: bool,
+}
+
+/// Options of `headland terrain`.
+#[derive(Args, Debug)]
+pub struct TerrainOptions {
+    /// The scenario
+    #[arg(value_name = "SCENARIO.ron")]
+    pub scenario: PathBuf,
+    /// The picture, an SVG
+    #[arg(long, value_name = "FILE.svg")]
+    pub picture: Option<PathBuf>,
 }
 
 /// Options of `headland demo`.

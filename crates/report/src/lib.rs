@@ -12,6 +12,7 @@ mod html;
 mod kind;
 mod number;
 mod plot;
+mod relief;
 mod report;
 mod table;
 mod thin;
@@ -24,5 +25,6 @@ pub use kind::{
 };
 pub use number::{number, quantity, with_interval};
 pub use plot::{Kind, Plot};
+pub use relief::{Ground, Relief};
 pub use report::{Item, Report, Section};
 pub use table::{Cell, Figure, Table, Tone};

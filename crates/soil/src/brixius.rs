@@ -14,7 +14,7 @@
 //! A wheel in the rut of an earlier one finds the cone index times a factor, the same for every later pass: ruts get
 //! most of their firmness in the first.
 
-use crate::cone_index::{MOIST, MOIST_ABOUT, Moist, settled_pa};
+use crate::cone_index::{MOIST, MOIST_ABOUT, Moist, Strength, settled};
 use headland_plugin::{Bound, Card, Contact, Footing, Plugin, Refusal, Soil, WheelContact, parameter};
 use serde::Deserialize;
 use std::path::Path;
@@ -39,7 +39,7 @@ pub struct Brixius {
     construction: Construction,
     pass_factor: f64,
     #[serde(skip)]
-    strength_pa: f64,
+    strength: Strength,
 }
 
 impl Plugin for Brixius {
@@ -69,8 +69,8 @@ impl Plugin for Brixius {
         ],
     };
 
-    fn settle(&mut self, _: &Path) -> Result<(), Refusal> {
-        self.strength_pa = settled_pa(self.cone_index_pa, self.moist)?;
+    fn settle(&mut self, folder: &Path) -> Result<(), Refusal> {
+        self.strength = settled(self.cone_index_pa, self.moist.as_ref(), folder)?;
         Ok(())
     }
 }
@@ -102,7 +102,7 @@ impl Soil for Brixius {
         let (a, c, k) = self.construction.constants();
         let (w, s) = (contact.load_n, contact.slip);
         let firmer = if contact.earlier_passes > 0 { self.pass_factor } else { 1.0 };
-        let inverse = inverse_mobility(firmer * self.strength_pa, contact);
+        let inverse = inverse_mobility(firmer * self.strength.at_pa(&contact.place), contact);
         let grip = 0.88 * -(-0.1 / inverse).exp_m1() * (-(-k * s.abs()).exp_m1()).copysign(s);
         Some(Footing {
             gross_traction_n: w * (grip + c),
@@ -123,8 +123,8 @@ mod tests {
     use headland_plugin::Tyre;
 
     fn soil(cone_index_pa: f64, construction: Construction) -> Brixius {
-        let (cone_index_pa, strength_pa) = (Some(cone_index_pa), cone_index_pa);
-        Brixius { cone_index_pa, moist: None, construction, pass_factor: 1.5, strength_pa }
+        let (cone_index_pa, strength) = (Some(cone_index_pa), Strength::Even(cone_index_pa));
+        Brixius { cone_index_pa, moist: None, construction, pass_factor: 1.5, strength }
     }
 
     fn ratios(soil: &Brixius, contact: &WheelContact) -> (f64, f64) {
@@ -241,6 +241,7 @@ mod tests {
         let mut wet: Brixius = ron::from_str(wet).unwrap();
         wet.settle(Path::new("")).unwrap();
         // e^(10.998 − 1.848 · 3.4012) = 111.40 psi.
-        assert!((wet.strength_pa / 768.1e3 - 1.0).abs() < 2e-3, "{}", wet.strength_pa);
+        let strength_pa = wet.strength.at_pa(&ON.place);
+        assert!((strength_pa / 768.1e3 - 1.0).abs() < 2e-3, "{strength_pa}");
     }
 }

@@ -8,11 +8,13 @@ mod cone_index;
 mod constant;
 mod earth;
 mod linear_speed_law;
+mod mosaic;
 mod pressure_speed_law;
 mod quadratic_speed_law;
 mod quadrature;
 mod shear;
 mod slip_sinkage;
+mod soil_map;
 #[cfg(test)]
 mod testing;
 mod wismer_luth;
@@ -26,6 +28,7 @@ pub use earth::Earth;
 pub use linear_speed_law::LinearSpeedLaw;
 pub use pressure_speed_law::PressureSpeedLaw;
 pub use quadratic_speed_law::QuadraticSpeedLaw;
+pub use soil_map::SoilMap;
 pub use wismer_luth::WismerLuth;
 pub use wong_reece::WongReece;
 pub use zones::Zones;
@@ -47,4 +50,5 @@ pub fn register(registry: &mut Registry) {
     registry.soil::<Bekker>();
     registry.soil::<WongReece>();
     registry.soil::<Zones>();
+    registry.soil::<SoilMap>();
 }

@@ -10,7 +10,7 @@
 //! A braked wheel (s < 0) is not in the source: here its traction is the driven wheel's with the other sign. A wheel in
 //! the rut of an earlier one finds the cone index times a factor, the same for every later pass.
 
-use crate::cone_index::{MOIST, MOIST_ABOUT, Moist, settled_pa};
+use crate::cone_index::{MOIST, MOIST_ABOUT, Moist, Strength, settled};
 use headland_plugin::{Bound, Card, Contact, Footing, Plugin, Refusal, Soil, WheelContact, parameter};
 use serde::Deserialize;
 use std::path::Path;
@@ -25,7 +25,7 @@ pub struct WismerLuth {
     moist: Option<Moist>,
     pass_factor: f64,
     #[serde(skip)]
-    strength_pa: f64,
+    strength: Strength,
 }
 
 impl Plugin for WismerLuth {
@@ -52,8 +52,8 @@ impl Plugin for WismerLuth {
         ],
     };
 
-    fn settle(&mut self, _: &Path) -> Result<(), Refusal> {
-        self.strength_pa = settled_pa(self.cone_index_pa, self.moist)?;
+    fn settle(&mut self, folder: &Path) -> Result<(), Refusal> {
+        self.strength = settled(self.cone_index_pa, self.moist.as_ref(), folder)?;
         Ok(())
     }
 }
@@ -67,7 +67,7 @@ impl Soil for WismerLuth {
         let (b, d) = (contact.tyre.width_m, contact.tyre.diameter_m);
         let (w, s) = (contact.load_n, contact.slip);
         let firmer = if contact.earlier_passes > 0 { self.pass_factor } else { 1.0 };
-        let inverse = w / (firmer * self.strength_pa * b * d);
+        let inverse = w / (firmer * self.strength.at_pa(&contact.place) * b * d);
         // Without load there is no traction, whatever the numeric.
         let grip = if w == 0.0 { 0.0 } else { 0.75 * (-(-0.3 * s.abs() / inverse).exp_m1()).copysign(s) };
         Some(Footing {
@@ -90,8 +90,8 @@ mod tests {
     use headland_plugin::Tyre;
 
     fn soil(cone_index_pa: f64) -> WismerLuth {
-        let (cone_index_pa, strength_pa) = (Some(cone_index_pa), cone_index_pa);
-        WismerLuth { cone_index_pa, moist: None, pass_factor: 1.5, strength_pa }
+        let (cone_index_pa, strength) = (Some(cone_index_pa), Strength::Even(cone_index_pa));
+        WismerLuth { cone_index_pa, moist: None, pass_factor: 1.5, strength }
     }
 
     /// Cone index at which the wheel of the tests has this numeric.

@@ -9,23 +9,20 @@
 //! The soils are those of `ground.soils`, by name. The wheels of an axle are on the soil below its middle, a vehicle without
 //! axles on that below its centre of gravity. Where they cross a border the resistance changes at once.
 
-use headland_plugin::{Card, Contact, Footing, Place, Plugin, Refusal, Soil, WheelContact, parameter};
+use crate::mosaic::{Layout, Mosaic};
+use headland_plugin::{Card, Place, Refusal, parameter};
 use serde::Deserialize;
 use std::path::Path;
 
 /// Soils in areas of the map.
+pub type Zones = Mosaic<Areas>;
+
+/// Areas of the map.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Zones {
+#[serde(deny_unknown_fields, rename = "Zones")]
+pub struct Areas {
     otherwise: String,
     areas: Vec<Area>,
-    #[serde(skip)]
-    soils: Vec<(String, Box<dyn Soil>)>,
-    /// Which of the soils lies in each area, and which in none.
-    #[serde(skip)]
-    in_area: Vec<usize>,
-    #[serde(skip)]
-    elsewhere: usize,
 }
 
 #[derive(Debug, Deserialize)]
@@ -42,7 +39,7 @@ struct Corner {
     north_m: f64,
 }
 
-impl Plugin for Zones {
+impl Layout for Areas {
     const CARD: Card = Card {
         name: "Zones",
         about: "soils in areas of the map, named in `ground.soils`",
@@ -78,6 +75,18 @@ impl Plugin for Zones {
         }
         Ok(())
     }
+
+    fn names(&self) -> Vec<(String, &str)> {
+        let mut names = vec![("otherwise".to_owned(), self.otherwise.as_str())];
+        let areas = self.areas.iter().enumerate();
+        names.extend(areas.map(|(index, area)| (format!("areas.{index}.soil"), area.soil.as_str())));
+        names
+    }
+
+    fn which(&self, place: &Place) -> usize {
+        let area = self.areas.iter().position(|area| area.holds(place.east_m, place.north_m));
+        area.map_or(0, |area| area + 1)
+    }
 }
 
 impl Area {
@@ -102,68 +111,12 @@ impl Area {
     }
 }
 
-impl Zones {
-    fn soil(&self, place: &Place) -> Option<&dyn Soil> {
-        let area = self.areas.iter().position(|area| area.holds(place.east_m, place.north_m));
-        let index = area.map_or(self.elsewhere, |area| self.in_area[area]);
-        self.soils.get(index).map(|(_, soil)| &**soil)
-    }
-}
-
-impl Soil for Zones {
-    fn resistance_n(&self, contact: &Contact) -> f64 {
-        self.resistance_at_n(contact, &Place::default())
-    }
-
-    fn resistance_at_n(&self, contact: &Contact, place: &Place) -> f64 {
-        self.soil(place).map_or(f64::NAN, |soil| soil.resistance_at_n(contact, place))
-    }
-
-    fn wheel(&self, contact: &WheelContact) -> Option<Footing> {
-        self.soil(&contact.place)?.wheel(contact)
-    }
-
-    fn needs_axles(&self) -> bool {
-        self.soils.iter().any(|(_, soil)| soil.needs_axles())
-    }
-
-    fn needs_soils(&self) -> bool {
-        true
-    }
-
-    fn adopt(&mut self, soils: Vec<(String, Box<dyn Soil>)>) -> Result<(), Refusal> {
-        let known: Vec<&str> = soils.iter().map(|(name, _)| name.as_str()).collect();
-        let index = |parameter: String, name: &str| {
-            known.iter().position(|known| *known == name).ok_or_else(|| Refusal {
-                parameter,
-                found: format!("\"{name}\""),
-                expected: format!("one of `ground.soils`: {}", known.join(", ")),
-            })
-        };
-        self.elsewhere = index("otherwise".to_owned(), &self.otherwise)?;
-        self.in_area = (self.areas.iter().enumerate())
-            .map(|(at, area)| index(format!("areas.{at}.soil"), &area.soil))
-            .collect::<Result<_, _>>()?;
-        let unused = (0..known.len())
-            .find(|at| *at != self.elsewhere && !self.in_area.contains(at))
-            .map(|at| known[at]);
-        if let Some(unused) = unused {
-            return Err(Refusal {
-                parameter: "soils".to_owned(),
-                found: format!("\"{unused}\", which lies nowhere"),
-                expected: "soils that an area or `otherwise` names".to_owned(),
-            });
-        }
-        self.soils = soils;
-        Ok(())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::testing::{ON, read};
     use crate::{Brixius, Constant};
+    use headland_plugin::{Contact, Plugin, Soil, WheelContact};
 
     fn soil<S: Soil + Plugin>(text: &str) -> Box<dyn Soil> {
         Box::new(read::<S>(text))
@@ -204,7 +157,7 @@ mod tests {
         for (east, north, expected) in table {
             assert!((resistance_n(&zones, east, north) - expected).abs() < 1e-9, "{east} {north}");
         }
-        assert!(zones.areas[0].size_m2() == 50.0 && zones.areas[1].size_m2() == 1000.0);
+        assert!(zones.layout.areas[0].size_m2() == 50.0 && zones.layout.areas[1].size_m2() == 1000.0);
     }
 
     #[test]
@@ -234,11 +187,11 @@ mod tests {
         let mut more = soils();
         more.push(("bog".to_owned(), soil::<Constant>("(coefficient: 0.4)")));
         assert!(zones.adopt(more).unwrap_err().to_string().contains("\"bog\", which lies nowhere"));
-        zones.areas[1].corners.truncate(2);
+        zones.layout.areas[1].corners.truncate(2);
         assert!(
             zones.settle(Path::new("")).unwrap_err().to_string().contains("`areas.1.corners` is 2 corners")
         );
-        zones.areas[1].corners = vec![Corner { east_m: 1.0, north_m: 1.0 }; 4];
+        zones.layout.areas[1].corners = vec![Corner { east_m: 1.0, north_m: 1.0 }; 4];
         assert!(zones.settle(Path::new("")).unwrap_err().to_string().contains("in one line"));
     }
 }

@@ -9,4 +9,5 @@ pub mod demo;
 pub mod diagnose;
 pub mod plugins;
 pub mod run;
+pub mod terrain;
 pub mod validate;

@@ -57,8 +57,9 @@ impl Step<'_> {
             let elastic_n = wheel.stiffness_n_m * wheel.touch.deflection_m.max(0.0);
             let felt = &wheel.felt;
             stepped.slip_j += lasts_s * felt.gross_n * (rolling_m_s(index) - along_m_s);
+            let hub_m_s = self.velocity_at(wheel.touch.hub()).dot(wheel.touch.along);
             stepped.soil_j +=
-                lasts_s * (way * felt.resistance_n * along_m_s + wheel.touch.load_n * wheel.sinking_m_s);
+                lasts_s * (way * felt.resistance_n * hub_m_s + wheel.touch.load_n * wheel.sinking_m_s);
             own.side_j -= lasts_s * felt.side_n * velocity.dot(wheel.touch.across);
             own.damping_j += lasts_s * (wheel.touch.load_n - elastic_n) * (closing_m_s - wheel.sinking_m_s);
         }

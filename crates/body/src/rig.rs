@@ -150,7 +150,7 @@ impl<'a> Rig<'a> {
     /// How far a tyre gives way now [m].
     fn deflection_m(&self, wheel: &Wheel) -> f64 {
         let hub = self.state.point(wheel.arm);
-        below(&self.ground, wheel, hub)
+        below(&self.ground, wheel, hub, self.state.ahead())
             .map_or(0.0, |spot| 0.5 * wheel.tyre.diameter_m - Wheel::above(hub, &spot).0 - wheel.sinkage_m)
     }
 
@@ -160,7 +160,7 @@ impl<'a> Rig<'a> {
         let axes = (state.ahead(), state.left());
         for wheel in &mut self.wheels {
             let hub = state.point(wheel.arm);
-            match below(&self.ground, wheel, hub) {
+            match below(&self.ground, wheel, hub, axes.0) {
                 Ok(spot) => {
                     let angle_rad = self.steer.angle_rad(wheel.axle, wheel.arm.x, wheel.arm.y);
                     wheel.meet(hub, &spot, axes, angle_rad, |point| state.velocity_at(point));
@@ -316,6 +316,8 @@ fn wheels<'a>(axles: &'a Axles, chassis: &Chassis, weight_n: f64) -> Vec<Wheel<'
                 stiffness_n_m: of_tyre(tyres),
                 damping_n_s_m: tyres * chassis.axles[index].damping_n_s_m,
                 earlier: axles.earlier(index),
+                // The chord of a circle that the ground cuts off.
+                footprint_m: ((axle.tyre.diameter_m - given_m) * given_m).max(0.0).sqrt(),
                 slip: 0.0,
                 side: 0.0,
                 sinkage_m: 0.0,
@@ -377,9 +379,10 @@ impl Carriage for Rig<'_> {
         let mut force = ahead * (push.free_n - self.way * push.resistance_n) + pulled;
         let mut moment = (hitch - before.centre).cross(pulled);
         for (index, wheel) in self.wheels.iter().enumerate() {
-            let own = wheel.force_n(self.way);
-            force += own;
+            let (own, held) = (wheel.force_n(), wheel.touch.along * (-self.way * wheel.felt.resistance_n));
+            force += own + held;
             moment += (wheel.touch.point - before.centre).cross(own);
+            moment += (wheel.touch.hub() - before.centre).cross(held);
             // What spins a wheel up turns the vehicle back.
             let inertia = self.spin.masses_kg[index] * wheel.touch.height_m;
             moment -= wheel.touch.across * (inertia * self.spin.changes_m_s2[index]);

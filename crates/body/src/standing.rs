@@ -19,13 +19,23 @@ pub(crate) struct Weight {
     pub height_m: f64,
 }
 
-/// Below a wheel, or why there is nothing.
-pub(crate) fn below(ground: &Ground, wheel: &Wheel, hub: Vector) -> Result<Spot, BodyError> {
-    ground.spot(hub.x, hub.y).ok_or_else(|| BodyError::OffTheMap {
-        wheel: wheel.told.clone(),
-        east_m: hub.x,
-        north_m: hub.y,
-    })
+/// The ground that a wheel rests on, or why there is nothing: the mean over the length of its tyre's footprint by Simpson's
+/// rule, as a tyre bridges what is shorter than that. `ahead` is the way the vehicle points.
+pub(crate) fn below(ground: &Ground, wheel: &Wheel, hub: Vector, ahead: Vector) -> Result<Spot, BodyError> {
+    const WEIGHTS: [(f64, f64); 3] = [(0.0, 4.0 / 6.0), (1.0, 1.0 / 6.0), (-1.0, 1.0 / 6.0)];
+    let mut mean = Spot::default();
+    for (part, weight) in WEIGHTS {
+        let point = hub + ahead * (part * wheel.footprint_m);
+        let spot = ground.spot(point.x, point.y).ok_or_else(|| BodyError::OffTheMap {
+            wheel: wheel.told.clone(),
+            east_m: point.x,
+            north_m: point.y,
+        })?;
+        mean.height_m += weight * spot.height_m;
+        mean.rise_east += weight * spot.rise_east;
+        mean.rise_north += weight * spot.rise_north;
+    }
+    Ok(mean)
 }
 
 /// Finds the pose at a place and heading, and leaves the wheels as they stand there.
@@ -60,7 +70,7 @@ pub(crate) fn stand(
         let mut stiff = [[0.0; 3]; 3];
         for wheel in wheels.iter_mut() {
             let hub = origin + turn * wheel.arm;
-            let (height_m, normal) = Wheel::above(hub, &below(ground, wheel, hub)?);
+            let (height_m, normal) = Wheel::above(hub, &below(ground, wheel, hub, axes[0])?);
             let deflection_m = 0.5 * wheel.tyre.diameter_m - height_m - wheel.sinkage_m;
             let load_n = (wheel.stiffness_n_m * deflection_m).max(0.0);
             (wheel.touch.load_n, wheel.touch.deflection_m, wheel.touch.height_m) =

@@ -10,7 +10,7 @@
 //! u and v are the velocity of the vehicle at the ground, along and across the wheel, w the speed at which it rolls.
 //! Sources: Pacejka, *Tire and Vehicle Dynamics* (2012), chapter 7 (single contact point with relaxation) and chapter 4
 //! (similarity, the bound of combined forces); the soil's own for G. Tread and carcass damp slip with the time constant c / k
-//! of the tyre. Leaves out the mass of the wheel apart from the chassis, camber, and the moment that turns a wheel back.
+//! of the tyre. The ground is its mean over the footprint. Leaves out the mass of the wheel apart from the chassis, camber, and the moment that turns a wheel back.
 
 use crate::chassis::AxleBody;
 use headland_plugin::{Contact, Place, Soil, Spot, Tyre, WheelContact};
@@ -39,6 +39,8 @@ pub(crate) struct Wheel<'a> {
     pub stiffness_n_m: f64,
     pub damping_n_s_m: f64,
     pub earlier: u32,
+    /// Half the length of its footprint on level ground [m].
+    pub footprint_m: f64,
     /// Slip along and across, ζ and η.
     pub slip: f64,
     pub side: f64,
@@ -92,6 +94,13 @@ pub(crate) struct Scene<'a> {
     pub load_n: f64,
     /// Most slip that soils are asked for.
     pub slip_limit: f64,
+}
+
+impl Touch {
+    /// The hub. What resists a wheel acts there: the ground presses it ahead of its middle, so that none of it is torque.
+    pub fn hub(&self) -> Vector {
+        self.point + self.normal * self.height_m
+    }
 }
 
 impl Wheel<'_> {
@@ -185,12 +194,10 @@ impl Wheel<'_> {
         self.felt = Felt { gross_n: gross_n / beyond, side_n: side_n / beyond, resistance_n, rut_m };
     }
 
-    /// Force of the ground on the vehicle [N], where a part `way` of the resistance acts.
-    pub fn force_n(&self, way: f64) -> Vector {
+    /// Force of the ground on the vehicle in the point where they meet [N], what resists apart.
+    pub fn force_n(&self) -> Vector {
         let Touch { normal, along, across, load_n, .. } = self.touch;
-        normal * load_n
-            + along * (self.felt.gross_n - way * self.felt.resistance_n)
-            + across * self.felt.side_n
+        normal * load_n + along * self.felt.gross_n + across * self.felt.side_n
     }
 
     /// Energy in its tyres [J].

@@ -1,11 +1,13 @@
 //! Cross-checks: against the longitudinal fidelity, against formulas, against itself.
 
 mod against_longitudinal;
+mod parts;
 mod standing;
 mod swinging;
+mod turning;
 
 use crate::{AxleBody, Chassis, Differential, Steering, SteeringMode, simulate};
-use headland_plugin::{Air, Driveline, Soil, Terrain, Tyre};
+use headland_plugin::{Air, Delivery, Demand, Driveline, Place, Plugin, Soil, Spot, Surface, Terrain, Tyre};
 use headland_sim::{Axle, Axles, Cycle, Model, Outcome, Phase, Resistance, Start, Until, Vehicle};
 
 pub const GRAVITY: f64 = 9.806_65;
@@ -54,8 +56,11 @@ pub fn terrain<T: Terrain + serde::de::DeserializeOwned + 'static>(ron: &str) ->
     Box::new(ron::from_str::<T>(ron).unwrap())
 }
 
-pub fn soil<T: Soil + serde::de::DeserializeOwned + 'static>(ron: &str) -> Box<dyn Soil> {
-    Box::new(ron::from_str::<T>(ron).unwrap())
+pub fn soil<T: Soil + Plugin>(ron: &str) -> Box<dyn Soil> {
+    let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+    let mut soil = options.from_str::<T>(ron).unwrap();
+    soil.settle(std::path::Path::new("")).unwrap();
+    Box::new(soil)
 }
 
 pub fn driveline<T: Driveline + serde::de::DeserializeOwned + 'static>(ron: &str) -> Box<dyn Driveline> {
@@ -104,4 +109,56 @@ pub fn last(outcome: &Outcome, channel: &str) -> f64 {
 
 pub fn channel<'a>(outcome: &'a Outcome, name: &str) -> &'a [f64] {
     outcome.trace.get(name).unwrap_or_else(|| panic!("no channel {name}"))
+}
+
+/// A driveline that gives what it is asked for, from a store that loses nothing.
+#[derive(Debug)]
+pub struct Ideal;
+
+impl Driveline for Ideal {
+    fn losses(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    fn source(&self) -> &'static str {
+        "store"
+    }
+
+    fn rotating_mass_kg(&self, _: bool) -> f64 {
+        100.0
+    }
+
+    fn deliver(&self, demand: &Demand, _: &[f64], _: &mut [f64]) -> Delivery {
+        let force_n = if demand.coasting { 0.0 } else { demand.force_n.max(0.0) };
+        Delivery { force_n, source_power_w: force_n * demand.speed_m_s, ..Delivery::NOTHING }
+    }
+}
+
+/// Level ground, and a circle to the right on it.
+#[derive(Debug)]
+pub struct Circle {
+    pub radius_m: f64,
+}
+
+impl Surface for Circle {
+    fn spot(&self, _: f64, _: f64) -> Option<Spot> {
+        Some(Spot::default())
+    }
+}
+
+impl Terrain for Circle {
+    fn at(&self, position_m: f64) -> Place {
+        let heading_rad = position_m / self.radius_m;
+        Place {
+            heading_rad,
+            curvature_per_m: 1.0 / self.radius_m,
+            east_m: self.radius_m * (1.0 - heading_rad.cos()),
+            north_m: self.radius_m * heading_rad.sin(),
+            ..Place::default()
+        }
+    }
+
+    fn surface(&self) -> Option<&dyn Surface> {
+        Some(self)
+    }
 }

@@ -45,10 +45,10 @@ fn a_slope_moves_load_to_the_lower_axle_by_its_height() {
     assert!(last(&outcome, "position_m").abs() < 0.02, "it stands: {}", last(&outcome, "position_m"));
 }
 
-/// A coast-down at a = F / m_eff takes m a h from the rear to the front, less what the wheels' spin gives back and what
-/// resists ahead of the hubs is left out: by hand (m_eff = m + 900): m a h / l, and 900 a r / l more.
+/// A coast-down at a = F / m_eff: what resists acts in the hubs, the wheels give back 900 a at the ground and turn the body
+/// by 900 a r as they spin down. About the centre of gravity: m_eff a (h − r) − 900 a h + 900 a r = m a (h − r).
 #[test]
-fn braking_moves_load_to_the_front_by_hand() {
+fn slowing_down_moves_load_to_the_front_by_hand() {
     let model = model(terrain::<Flat>("()"), soil::<Constant>("(coefficient: 0.07)"));
     let outcome = run(&model, &cycle(8.0, coast_down(), 2e-3));
     let loads = channel(&outcome, "axle_1_load_n");
@@ -57,8 +57,9 @@ fn braking_moves_load_to_the_front_by_hand() {
     let mean = slow.iter().map(|row| loads[*row]).sum::<f64>() / slow.len() as f64;
     let weight_n = MASS_KG * GRAVITY;
     let slowing = 0.07 * weight_n / (MASS_KG + 900.0);
-    // The wheels' own momentum goes through the ground at the height of nothing, and turns the body by its spin.
-    let transfer_n = (MASS_KG * slowing * 1.3 + 900.0 * slowing * 0.98) / 3.6;
+    let stiffness = 1e6 / (0.365 + 170.0 / 150.0);
+    let hub_m = 0.5 * 2.045 - 0.25 * weight_n / stiffness;
+    let transfer_n = MASS_KG * slowing * (1.3 - hub_m) / 3.6;
     let found_n = mean - weight_n * 2.0 / 3.6;
     assert!((found_n / transfer_n - 1.0).abs() < 0.02, "{found_n} {transfer_n}");
 }
@@ -133,7 +134,8 @@ fn a_map_that_ends_is_told_with_the_wheel_and_the_trace_is_kept() {
     let outcome = run(&model, &cycle(6.0, coast_down(), 2e-3));
     let End::Stopped { position_m, reason, .. } = &outcome.end else { panic!("{:?}", outcome.end) };
     assert!(reason.contains("wheel of axle 1 comes to the edge of the map"), "{reason}");
-    assert!((position_m - 28.4).abs() < 0.02 && outcome.trace.len() > 1000, "{position_m}");
+    // The front edge of a footprint of 0.65 m, 1.6 m ahead.
+    assert!((position_m - (30.0 - 1.6 - 0.325)).abs() < 0.02 && outcome.trace.len() > 1000, "{position_m}");
 }
 
 #[test]

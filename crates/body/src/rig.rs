@@ -242,6 +242,13 @@ impl<'a> Rig<'a> {
     }
 
     fn wrong(&mut self, step_s: f64) -> Option<String> {
+        if let Some(wheel) = self.wheels.iter().find(|wheel| wheel.felt.gross_n.is_nan()) {
+            let load_n = wheel.touch.load_n;
+            return Some(format!(
+                "{} sinks to its hub: the ground does not carry its {load_n:.0} N",
+                wheel.told
+            ));
+        }
         let state = &self.state;
         if !(state.velocity.is_finite() && state.turning.is_finite() && state.centre.is_finite()) {
             return Some("the motion is no finite number: a shorter step may help".to_owned());
@@ -252,13 +259,6 @@ impl<'a> Rig<'a> {
         }
         if self.ground.turned(&self.track.place) {
             return Some(BodyError::NoSurface { position_m: self.track.position_m }.to_string());
-        }
-        if let Some(wheel) = self.wheels.iter().find(|wheel| wheel.felt.gross_n.is_nan()) {
-            let load_n = wheel.touch.load_n;
-            return Some(format!(
-                "{} sinks to its hub: the ground does not carry its {load_n:.0} N",
-                wheel.told
-            ));
         }
         let lost_m = LOST * self.steer.look_ahead_m();
         if self.track.left_m.abs() > lost_m {

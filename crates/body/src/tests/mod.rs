@@ -1,6 +1,7 @@
 //! Cross-checks: against the longitudinal fidelity, against formulas, against itself.
 
 mod against_longitudinal;
+mod ending;
 mod parts;
 mod standing;
 mod swinging;

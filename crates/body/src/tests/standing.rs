@@ -4,7 +4,7 @@ use super::{GRAVITY, MASS_KG, channel, chassis, coast_down, cycle, last, model, 
 use crate::rig::Rig;
 use crate::{BodyError, simulate};
 use headland_plugin::{Place, Spot, Surface, Terrain};
-use headland_sim::{Carriage, End, Phase, Start, Until};
+use headland_sim::{Axles, Carriage, End, Phase, Start, Until};
 use headland_soil::Constant;
 use headland_terrain::{ConstantGrade, Flat};
 
@@ -156,4 +156,27 @@ fn a_step_that_is_too_long_is_refused_before_it_blows_up() {
     let cycle = cycle(8.0, coast_down(), 0.2);
     let told = simulate(&model, &chassis(), &cycle, 0.0).unwrap_err().to_string();
     assert!(told.contains("`step_s` is 0.2, expected at most"), "{told}");
+}
+
+/// Six axles in a row, as a track has, and twin tyres on the last: they share as springs do, like those of one dimension.
+#[test]
+fn a_row_of_wheels_and_twin_tyres_share_the_load_as_springs() {
+    let mut list: Vec<_> = (0..6).map(|index| super::axle(2.0 - 0.7 * f64::from(index))).collect();
+    list[5].wheels = 4;
+    let axles = Axles::new(list, 1.3, 0.7, 0.5).unwrap();
+    let mut model = model(terrain::<Flat>("()"), soil::<Constant>("(coefficient: 0.07)"));
+    let mut chassis = chassis();
+    chassis.axles = vec![chassis.axles[0]; 6];
+    let weight_n = MASS_KG * GRAVITY;
+    let expected: Vec<f64> = (0..6).map(|index| axles.load_n(index, weight_n, 0.0)).collect();
+    model.axles = Some(axles);
+    let rig = Rig::new(&model, &chassis, at_rest(), 1e-3).unwrap();
+    for (index, expected) in expected.iter().enumerate() {
+        assert!((rig.axle(index).load_n / expected - 1.0).abs() < 1e-9, "axle {index}");
+    }
+    assert!(expected[5] > 1.5 * expected[4], "twins are twice as stiff");
+    let coasting = simulate(&model, &chassis, &cycle(5.0, coast_down(), 1e-3), 0.1).unwrap();
+    assert_eq!(coasting.end, End::Finished);
+    let by_hand = 0.5 * 25.0 * (MASS_KG + 900.0) / (0.07 * weight_n);
+    assert!((last(&coasting, "position_m") / by_hand - 1.0).abs() < 0.01);
 }

@@ -1,0 +1,78 @@
+//! What is loaded on the way, and ground that gives way.
+
+use super::{GRAVITY, MASS_KG, chassis, coast_down, cycle, last, model, run, soil, terrain};
+use crate::chassis::Payload;
+use crate::simulate;
+use headland_plugin::{Contact, Footing, Load, Situation, Soil, Task, WheelContact};
+use headland_sim::{End, Named, Phase, Until};
+use headland_soil::Constant;
+use headland_terrain::Flat;
+
+/// A tank that fills by 500 kg each second, up to 2 t.
+#[derive(Debug)]
+struct Filling;
+
+impl Task for Filling {
+    fn load(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Load {
+        Load { mass_kg: (500.0 * at.time_s).min(2_000.0), ..Load::default() }
+    }
+}
+
+/// 2 t, 1 m behind the centre of gravity: the rear axle, 2 m behind it, takes 2 t g (1.6 + 1) / 3.6.
+#[test]
+fn what_is_loaded_presses_the_axles_by_the_lever_and_the_ledger_closes() {
+    let mut model = model(terrain::<Flat>("()"), soil::<Constant>("(coefficient: 0.03)"));
+    model.tasks.push(Named { name: "filling".to_owned(), plugin: Box::new(Filling) });
+    let mut laden = chassis();
+    laden.payload = Some(Payload { position_m: -1.0, height_m: 1.3 });
+    let level = cycle(3.0, vec![Phase::Coast { until: Until::Elapsed(7.0) }], 2e-3);
+    let outcome = simulate(&model, &laden, &level, 0.0).unwrap();
+    assert_eq!(outcome.end, End::Finished);
+    assert!(outcome.ledger.relative_residual() < 1e-3, "{:?}", outcome.ledger);
+    let before_n = MASS_KG * GRAVITY * 1.6 / 3.6;
+    let slowing_n = 15_019.3 * 0.03 * GRAVITY * (1.3 - 0.95) / 3.6;
+    let added_n = last(&outcome, "axle_2_load_n") - before_n + slowing_n;
+    let by_hand = 2_000.0 * GRAVITY * 2.6 / 3.6;
+    assert!((added_n / by_hand - 1.0).abs() < 0.01, "{added_n} {by_hand}");
+    let nowhere = simulate(&model, &chassis(), &level, 0.0).unwrap();
+    let End::Stopped { reason, .. } = nowhere.end else { panic!("{:?}", nowhere.end) };
+    assert!(reason.contains("no `payload`"), "{reason}");
+}
+
+/// Firm for 5 m, and bottomless behind.
+#[derive(Debug)]
+struct Bog;
+
+impl Soil for Bog {
+    fn resistance_n(&self, _: &Contact) -> f64 {
+        f64::NAN
+    }
+
+    fn needs_axles(&self) -> bool {
+        true
+    }
+
+    fn wheel(&self, contact: &WheelContact) -> Option<Footing> {
+        if contact.position_m > 5.0 {
+            let sinkage_m = f64::INFINITY;
+            return Some(Footing { gross_traction_n: f64::NAN, motion_resistance_n: f64::NAN, sinkage_m });
+        }
+        Some(Footing {
+            gross_traction_n: 8.0 * contact.slip * contact.load_n,
+            motion_resistance_n: 0.05 * contact.load_n,
+            sinkage_m: 1e-6 * contact.load_n,
+        })
+    }
+}
+
+#[test]
+fn a_wheel_that_sinks_to_its_hub_ends_the_run_and_is_named() {
+    let model = model(terrain::<Flat>("()"), Box::new(Bog));
+    let outcome = run(&model, &cycle(4.0, coast_down(), 2e-3));
+    let End::Stopped { reason, position_m, .. } = &outcome.end else { panic!("{:?}", outcome.end) };
+    assert!(reason.contains("wheel of axle 1 sinks to its hub"), "{reason}");
+    assert!((position_m - 3.4).abs() < 0.05, "{position_m}");
+    // Up to there the front wheels stand in ruts of a µm per newton: 35 kN make 35 mm.
+    let ruts = super::channel(&outcome, "axle_1_left_sinkage_m");
+    assert!((ruts[ruts.len() - 10] - 0.0355).abs() < 2e-3, "{}", ruts[ruts.len() - 10]);
+}

@@ -10,12 +10,15 @@ use headland_sim::Stepped;
 use rapier3d_f64::prelude::Vector;
 
 /// What a body takes beside what every run knows [J].
+#[allow(clippy::struct_field_names, reason = "each name ends in its unit")]
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Own {
     /// Slip across the wheels.
     pub side_j: f64,
     /// Damping of the tyres.
     pub damping_j: f64,
+    /// That of the suspension.
+    pub suspension_j: f64,
 }
 
 /// The step from `before` to `after`.
@@ -61,7 +64,13 @@ impl Step<'_> {
             stepped.soil_j +=
                 lasts_s * (way * felt.resistance_n * hub_m_s + wheel.touch.load_n * wheel.sinking_m_s);
             own.side_j -= lasts_s * felt.side_n * velocity.dot(wheel.touch.across);
-            own.damping_j += lasts_s * (wheel.touch.load_n - elastic_n) * (closing_m_s - wheel.sinking_m_s);
+            let pressing_m_s = closing_m_s - wheel.sinking_m_s;
+            let squeezing_m_s = wheel.strut.map_or(0.0, |strut| strut.rate_m_s);
+            own.damping_j += lasts_s * (wheel.touch.load_n - elastic_n) * (pressing_m_s - squeezing_m_s);
+            if let Some(strut) = wheel.strut {
+                let springing_n = strut.stiffness_n_m * strut.squeezed_m;
+                own.suspension_j += lasts_s * (wheel.touch.load_n - springing_n) * squeezing_m_s;
+            }
         }
         stepped
     }

@@ -84,6 +84,17 @@ pub struct AxleBody {
     pub relaxation_length_m: f64,
     /// Between its wheels, where it is driven.
     pub differential: Differential,
+    /// Between its wheels and the chassis; `None` where only tyres spring.
+    pub suspension: Option<Suspension>,
+}
+
+/// Spring and damper between the wheels of one side and the chassis, in line with their tyres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Suspension {
+    /// Of each side [N/m].
+    pub stiffness_n_m: f64,
+    /// Of each side, more than 0 [N s/m].
+    pub damping_n_s_m: f64,
 }
 
 impl Chassis {

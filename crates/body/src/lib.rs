@@ -22,7 +22,7 @@ mod track;
 mod wheel;
 mod world;
 
-pub use chassis::{AxleBody, Chassis, Differential, Payload, Steering, SteeringMode};
+pub use chassis::{AxleBody, Chassis, Differential, Payload, Steering, SteeringMode, Suspension};
 pub use error::BodyError;
 
 use headland_sim::{Cycle, Model, Outcome, simulate_on};

@@ -31,7 +31,7 @@ pub(crate) fn check(
 ) -> Result<(), BodyError> {
     let sum = |weigh: &dyn Fn(&Wheel) -> f64| {
         wheels.iter().fold((0.0, 0.0), |(k, c), wheel| {
-            (k + weigh(wheel) * wheel.stiffness_n_m, c + weigh(wheel) * wheel.damping_n_s_m)
+            (k + weigh(wheel) * wheel.standing_n_m(), c + weigh(wheel) * damping_n_s_m(wheel))
         })
     };
     let per = |(k, c): (f64, f64), inertia: f64| (k / inertia, c / inertia);
@@ -40,6 +40,10 @@ pub(crate) fn check(
         ("the roll on the tyres", per(sum(&|wheel| wheel.arm.y * wheel.arm.y), carried.roll_kg_m2)),
         ("the pitch on the tyres", per(sum(&|wheel| wheel.arm.x * wheel.arm.x), carried.pitch_kg_m2)),
     ];
+    for (wheel, strut) in wheels.iter().filter_map(|wheel| Some((wheel, wheel.strut?))) {
+        let rate = (wheel.stiffness_n_m + strut.stiffness_n_m) / (wheel.damping_n_s_m + strut.damping_n_s_m);
+        fastest.push(("a suspension against its tyre", (0.0, rate)));
+    }
     for (mass_kg, turning) in spin.shafts() {
         let (k, c) = turning.iter().fold((0.0, 0.0), |(k, c), (index, lead)| {
             let wheel = &wheels[*index];
@@ -57,6 +61,11 @@ pub(crate) fn check(
         return Err(BodyError::Step { found_s: step_s, longest_s, what });
     }
     Ok(())
+}
+
+/// The most that tyre and suspension in line can damp [N s/m].
+fn damping_n_s_m(wheel: &Wheel) -> f64 {
+    wheel.strut.map_or(wheel.damping_n_s_m, |strut| strut.damping_n_s_m + wheel.damping_n_s_m)
 }
 
 /// Force along a wheel per slip, about none [N].

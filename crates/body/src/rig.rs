@@ -1,34 +1,22 @@
 //! A vehicle that is driven as a rigid body.
 
+mod carriage;
+mod watch;
+
 use crate::BodyError;
-use crate::accounts::{Own, Step};
+use crate::accounts::Own;
 use crate::chassis::Chassis;
 use crate::ground::Ground;
 use crate::pace::{self, Carried};
 use crate::spin::Spin;
 use crate::standing::{Weight, below, stand};
 use crate::steer::Steer;
-use crate::track::{Track, heading_of, yaw_of};
-use crate::wheel::{Felt, Scene, Touch, Wheel};
+use crate::track::{Track, yaw_of};
+use crate::wheel::{Felt, Scene, Strut, Touch, Wheel};
 use crate::world::{State, World, properties};
 use headland_plugin::Soil;
-use headland_sim::{AxleMotion, Axles, Carriage, Model, Motion, Push, Start, Stepped};
+use headland_sim::{Axles, Model, Push, Start};
 use rapier3d_f64::prelude::Vector;
-
-/// Resistances come to their whole force on this way: about a rest they are springs, and hold [m].
-///
-/// Source: Dahl, *A Solid Friction Model* (1968).
-const RESTING_M: f64 = 1e-3;
-/// A vehicle that has come to rest rocks on its tyres, and has set off beyond this speed [m/s].
-const SETS_OFF_M_S: f64 = 0.05;
-/// The same where brakes hold every wheel: a hard stop rocks harder, and what goes faster slides [m/s].
-const SLIDES_M_S: f64 = 0.5;
-/// A vehicle that leans further than this has overturned: none that works stands so [cosine of 60°].
-const OVERTURNED: f64 = 0.5;
-/// Wheels that slip more than the limit for this long only dig [s].
-const DIGS_S: f64 = 1.0;
-/// A vehicle this many times the driver's look ahead beside its path has lost it.
-const LOST: f64 = 2.0;
 
 /// A vehicle in motion.
 #[derive(Debug)]
@@ -52,6 +40,7 @@ pub(crate) struct Rig<'a> {
     digging_s: f64,
     own: Own,
     first_spring_j: f64,
+    first_strut_j: f64,
     trouble: Option<String>,
 }
 
@@ -115,6 +104,7 @@ impl<'a> Rig<'a> {
             digging_s: 0.0,
             own: Own::default(),
             first_spring_j: 0.0,
+            first_strut_j: 0.0,
             trouble: None,
         };
         // A step of no length: what the wheels feel where they stand, for the driver who knows what resists.
@@ -124,6 +114,7 @@ impl<'a> Rig<'a> {
         }
         rig.feel(0.0);
         rig.first_spring_j = rig.spring_j();
+        rig.first_strut_j = rig.strut_j();
         Ok(rig)
     }
 
@@ -147,11 +138,18 @@ impl<'a> Rig<'a> {
         self.wheels.iter().map(|wheel| wheel.spring_j(self.deflection_m(wheel))).sum()
     }
 
+    /// Energy in the suspension [J].
+    fn strut_j(&self) -> f64 {
+        let struts = self.wheels.iter().filter_map(|wheel| wheel.strut);
+        struts.map(|strut| 0.5 * strut.stiffness_n_m * strut.squeezed_m * strut.squeezed_m).sum()
+    }
+
     /// How far a tyre gives way now [m].
     fn deflection_m(&self, wheel: &Wheel) -> f64 {
         let hub = self.state.point(wheel.arm);
-        below(&self.ground, wheel, hub, self.state.ahead())
-            .map_or(0.0, |spot| 0.5 * wheel.tyre.diameter_m - Wheel::above(hub, &spot).0 - wheel.sinkage_m)
+        below(&self.ground, wheel, hub, self.state.ahead()).map_or(0.0, |spot| {
+            0.5 * wheel.tyre.diameter_m - Wheel::above(hub, &spot).0 - wheel.sinkage_m - wheel.raised_m()
+        })
     }
 
     /// Lets every wheel meet the ground below it.
@@ -234,54 +232,6 @@ impl<'a> Rig<'a> {
         let up_m = self.axles.hitch_height_m - self.axles.centre_of_gravity_height_m;
         self.state.point(Vector::new(self.chassis.hitch_position_m, 0.0, up_m))
     }
-
-    /// What is wrong after a step.
-    fn look(&mut self, step_s: f64) {
-        let Some(told) = self.wrong(step_s) else { return };
-        self.trouble.get_or_insert(told);
-    }
-
-    fn wrong(&mut self, step_s: f64) -> Option<String> {
-        if let Some(wheel) = self.wheels.iter().find(|wheel| wheel.felt.gross_n.is_nan()) {
-            let load_n = wheel.touch.load_n;
-            return Some(format!(
-                "{} sinks to its hub: the ground does not carry its {load_n:.0} N",
-                wheel.told
-            ));
-        }
-        let state = &self.state;
-        if !(state.velocity.is_finite() && state.turning.is_finite() && state.centre.is_finite()) {
-            return Some("the motion is no finite number: a shorter step may help".to_owned());
-        }
-        if state.up().z < OVERTURNED {
-            let aside = if state.left().z.abs() > state.ahead().z.abs() { "its side" } else { "its end" };
-            return Some(format!("the vehicle overturned onto {aside}"));
-        }
-        if self.ground.turned(&self.track.place) {
-            return Some(BodyError::NoSurface { position_m: self.track.position_m }.to_string());
-        }
-        let lost_m = LOST * self.steer.look_ahead_m();
-        if self.track.left_m.abs() > lost_m {
-            let left_m = self.track.left_m.abs();
-            return Some(format!("the vehicle is {left_m:.1} m beside its path: it cannot steer so tightly"));
-        }
-        self.digging_s = if self.slip() > self.axles.slip_limit { self.digging_s + step_s } else { 0.0 };
-        (self.digging_s > DIGS_S).then(|| {
-            let most_n: f64 = self.wheels.iter().map(|wheel| wheel.felt.gross_n).sum();
-            format!(
-                "slip past the limit: with more than the {} that the vehicle may have the ground gives its driven \
-                 wheels {most_n:.0} N, and they are asked for more",
-                self.axles.slip_limit
-            )
-        })
-    }
-
-    /// Mean slip of the driven wheels.
-    fn slip(&self) -> f64 {
-        let driven = |wheel: &&Wheel| self.axles.list()[wheel.axle].lead.is_some();
-        let count = self.wheels.iter().filter(driven).count() as f64;
-        self.wheels.iter().filter(driven).map(|wheel| wheel.slip).sum::<f64>() / count
-    }
 }
 
 /// The direction of a path on its slope.
@@ -318,6 +268,16 @@ fn wheels<'a>(axles: &'a Axles, chassis: &Chassis, weight_n: f64) -> Vec<Wheel<'
                 earlier: axles.earlier(index),
                 // The chord of a circle that the ground cuts off.
                 footprint_m: ((axle.tyre.diameter_m - given_m) * given_m).max(0.0).sqrt(),
+                strut: chassis.axles[index].suspension.map(|own| {
+                    let level_m = axles.load_n(index, weight_n, 0.0) / sides.len() as f64 / own.stiffness_n_m;
+                    Strut {
+                        stiffness_n_m: own.stiffness_n_m,
+                        damping_n_s_m: own.damping_n_s_m,
+                        level_m,
+                        squeezed_m: level_m,
+                        rate_m_s: 0.0,
+                    }
+                }),
                 slip: 0.0,
                 side: 0.0,
                 sinkage_m: 0.0,
@@ -329,160 +289,3 @@ fn wheels<'a>(axles: &'a Axles, chassis: &Chassis, weight_n: f64) -> Vec<Wheel<'
     }
     wheels
 }
-
-impl Carriage for Rig<'_> {
-    fn motion(&self) -> Motion {
-        let mut place = self.track.place;
-        place.heading_rad = heading_of(self.state.ahead(), place.heading_rad);
-        let foot = self.foot();
-        (place.east_m, place.north_m) = (foot.x, foot.y);
-        if let Some(spot) = self.ground.spot(place.east_m, place.north_m) {
-            place.elevation_m = spot.height_m;
-        }
-        Motion {
-            position_m: self.track.position_m,
-            speed_m_s: if self.resting { 0.0 } else { self.state.speed_m_s() },
-            acceleration_m_s2: self.acceleration_m_s2,
-            driven_m_s: self.spin.driven_m_s(),
-            place,
-            resistance_n: self.wheels.iter().map(|wheel| wheel.felt.resistance_n).sum(),
-            slip: self.slip(),
-        }
-    }
-
-    fn axle(&self, index: usize) -> AxleMotion {
-        let own = || self.wheels.iter().filter(|wheel| wheel.axle == index);
-        let sum = |of: &dyn Fn(&Wheel) -> f64| own().map(of).sum::<f64>();
-        let wheels = own().count() as f64;
-        AxleMotion {
-            load_n: sum(&|wheel| wheel.touch.load_n),
-            slip: sum(&|wheel| wheel.slip) / wheels,
-            traction_n: sum(&|wheel| wheel.felt.gross_n),
-            resistance_n: sum(&|wheel| wheel.felt.resistance_n),
-            sinkage_m: sum(&|wheel| wheel.felt.rut_m) / wheels,
-        }
-    }
-
-    fn advance(&mut self, push: &Push, step_s: f64) -> Stepped {
-        let mass_j = self.load(push);
-        let before = self.state;
-        let speed_m_s = before.speed_m_s();
-        self.aim(step_s);
-        self.touch();
-        self.feel(step_s);
-        self.way = (self.way + step_s * speed_m_s / RESTING_M) / (1.0 + step_s * speed_m_s.abs() / RESTING_M);
-        let rolled: Vec<f64> = self.spin.wheels_m_s.clone();
-        let turned =
-            self.spin.advance(push.drive_n, push.brake_n, |wheel| self.wheels[wheel].felt.gross_n, step_s);
-        let (ahead, hitch) = (before.ahead(), self.hitch());
-        let pulled = ahead * (push.hitch_n - self.way * push.drawbar_n);
-        let mut force = ahead * (push.free_n - self.way * push.resistance_n) + pulled;
-        let mut moment = (hitch - before.centre).cross(pulled);
-        for (index, wheel) in self.wheels.iter().enumerate() {
-            let (own, held) = (wheel.force_n(), wheel.touch.along * (-self.way * wheel.felt.resistance_n));
-            force += own + held;
-            moment += (wheel.touch.point - before.centre).cross(own);
-            moment += (wheel.touch.hub() - before.centre).cross(held);
-            // What spins a wheel up turns the vehicle back.
-            let inertia = self.spin.masses_kg[index] * wheel.touch.height_m;
-            moment -= wheel.touch.across * (inertia * self.spin.changes_m_s2[index]);
-        }
-        self.world.step(force, moment, step_s);
-        self.state = self.world.state();
-        let step = Step {
-            before: &before,
-            after: &self.state,
-            lasts_s: step_s,
-            way: self.way,
-            weight_n: self.mass_kg * self.model.gravity_m_s2,
-            hitch,
-            turned,
-        };
-        let rolling = |wheel: usize| 0.5 * (rolled[wheel] + self.spin.wheels_m_s[wheel]);
-        let mut stepped = step.work(&self.wheels, rolling, &mut self.own);
-        stepped.mass_j = -mass_j;
-        for wheel in &mut self.wheels {
-            wheel.sinkage_m += step_s * wheel.sinking_m_s;
-        }
-        self.track.follow(self.foot());
-        let after_m_s = self.state.speed_m_s();
-        self.acceleration_m_s2 = Some((after_m_s - speed_m_s) / step_s);
-        self.resting = if self.resting {
-            let held = self.spin.wheels_m_s.iter().all(|speed| *speed == 0.0);
-            after_m_s.abs() <= if held { SLIDES_M_S } else { SETS_OFF_M_S }
-        } else {
-            after_m_s * speed_m_s <= 0.0
-        };
-        self.look(step_s);
-        stepped
-    }
-
-    fn trouble(&self) -> Option<String> {
-        self.trouble.clone()
-    }
-
-    fn kinetic_j(&self) -> f64 {
-        self.world.kinetic_j() + self.spin.kinetic_j()
-    }
-
-    fn accounts(&self) -> Vec<(&'static str, f64)> {
-        vec![
-            ("side slip", self.own.side_j),
-            ("tyre damping", self.own.damping_j),
-            ("tyre springs", self.spring_j() - self.first_spring_j),
-        ]
-    }
-
-    fn channels(&self) -> Vec<String> {
-        let whole =
-            ["roll_rad", "pitch_rad", "yaw_rate_rad_s", "side_speed_m_s", "path_offset_m", "height_m"];
-        let mut names: Vec<String> = whole.map(str::to_owned).into();
-        for wheel in &self.wheels {
-            names.extend(WHEEL_CHANNELS.map(|what| format!("{}_{what}", wheel.name)));
-        }
-        names
-    }
-
-    fn write(&self, row: &mut Vec<f64>) {
-        let State { turning, velocity, centre, .. } = self.state;
-        let (ahead, left, up) = (self.state.ahead(), self.state.left(), self.state.up());
-        row.extend([
-            // The right side down, and the nose up, count positive.
-            left.z.atan2(up.z),
-            ahead.z.asin(),
-            // As headings, clockwise.
-            -turning.z,
-            velocity.dot(left),
-            self.track.left_m,
-            centre.z,
-        ]);
-        for wheel in &self.wheels {
-            let Touch { load_n, deflection_m, steer_rad, .. } = wheel.touch;
-            let Felt { gross_n, side_n, resistance_n, rut_m, .. } = wheel.felt;
-            row.extend([
-                load_n,
-                wheel.slip,
-                (-wheel.side).clamp(-1.0, 1.0).asin(),
-                gross_n,
-                side_n,
-                resistance_n,
-                rut_m,
-                deflection_m,
-                steer_rad,
-            ]);
-        }
-    }
-}
-
-/// What is written of a wheel.
-const WHEEL_CHANNELS: [&str; 9] = [
-    "load_n",
-    "slip",
-    "slip_angle_rad",
-    "traction_n",
-    "side_force_n",
-    "resistance_n",
-    "sinkage_m",
-    "deflection_m",
-    "steer_rad",
-];

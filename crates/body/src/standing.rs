@@ -72,9 +72,9 @@ pub(crate) fn stand(
             let hub = origin + turn * wheel.arm;
             let (height_m, normal) = Wheel::above(hub, &below(ground, wheel, hub, axes[0])?);
             let deflection_m = 0.5 * wheel.tyre.diameter_m - height_m - wheel.sinkage_m;
-            let load_n = (wheel.stiffness_n_m * deflection_m).max(0.0);
-            (wheel.touch.load_n, wheel.touch.deflection_m, wheel.touch.height_m) =
-                (load_n, deflection_m, height_m);
+            wheel.stand(deflection_m);
+            wheel.touch.height_m = height_m;
+            let load_n = wheel.touch.load_n;
             let point = hub - normal * height_m;
             force += normal * load_n;
             moment += (point - centre).cross(normal * load_n);
@@ -82,7 +82,7 @@ pub(crate) fn stand(
             loads += load_n;
             let arm = wheel.arm - weight.centre;
             let lever = [1.0, arm.y, -arm.x];
-            let k = wheel.stiffness_n_m * if deflection_m > 0.0 { 1.0 } else { IN_THE_AIR };
+            let k = wheel.standing_n_m() * if load_n > 0.0 { 1.0 } else { IN_THE_AIR };
             for (row, a) in stiff.iter_mut().zip(lever) {
                 for (cell, b) in row.iter_mut().zip(lever) {
                     *cell += k * a * b;

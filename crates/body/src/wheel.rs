@@ -41,6 +41,8 @@ pub(crate) struct Wheel<'a> {
     pub earlier: u32,
     /// Half the length of its footprint on level ground [m].
     pub footprint_m: f64,
+    /// What its hub springs on; `None` where it is fixed to the chassis.
+    pub strut: Option<Strut>,
     /// Slip along and across, ζ and η.
     pub slip: f64,
     pub side: f64,
@@ -52,6 +54,19 @@ pub(crate) struct Wheel<'a> {
     pub touch: Touch,
     /// What it last felt.
     pub felt: Felt,
+}
+
+/// A suspension and how far it is squeezed.
+///
+/// k δ + c dδ/dt = k_s x + c_s dx/dt        tyre and suspension carry the same load: the hub has no mass of its own
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Strut {
+    pub stiffness_n_m: f64,
+    pub damping_n_s_m: f64,
+    /// On level ground, where the hub has its place in the axes of the vehicle [m].
+    pub level_m: f64,
+    pub squeezed_m: f64,
+    pub rate_m_s: f64,
 }
 
 /// Where a wheel meets the ground.
@@ -128,8 +143,19 @@ impl Wheel<'_> {
         let moving = velocity(point);
         let deflection_m = 0.5 * self.tyre.diameter_m - height_m - self.sinkage_m;
         let closing_m_s = -moving.dot(normal) - self.sinking_m_s;
-        let pressed_n = self.stiffness_n_m * deflection_m + self.damping_n_s_m * closing_m_s;
-        let load_n = if deflection_m > 0.0 { pressed_n.max(0.0) } else { 0.0 };
+        let (k, c) = (self.stiffness_n_m, self.damping_n_s_m);
+        let deflection_m = deflection_m - self.raised_m();
+        let mut load_n = k * deflection_m + c * closing_m_s;
+        if let Some(strut) = &mut self.strut {
+            let springing_n = strut.stiffness_n_m * strut.squeezed_m;
+            strut.rate_m_s = if deflection_m > 0.0 {
+                (load_n - springing_n) / (strut.damping_n_s_m + c)
+            } else {
+                -springing_n / strut.damping_n_s_m
+            };
+            load_n = springing_n + strut.damping_n_s_m * strut.rate_m_s;
+        }
+        let load_n = if deflection_m > 0.0 { load_n.max(0.0) } else { 0.0 };
         self.touch = Touch {
             point,
             normal,
@@ -198,6 +224,36 @@ impl Wheel<'_> {
     pub fn force_n(&self) -> Vector {
         let Touch { normal, along, across, load_n, .. } = self.touch;
         normal * load_n + along * self.felt.gross_n + across * self.felt.side_n
+    }
+
+    /// How much higher the hub is in the axes of the vehicle than on level ground [m].
+    pub fn raised_m(&self) -> f64 {
+        self.strut.map_or(0.0, |strut| strut.squeezed_m - strut.level_m)
+    }
+
+    /// Load per way of the chassis, tyre and suspension in line [N/m].
+    pub fn standing_n_m(&self) -> f64 {
+        let k = self.stiffness_n_m;
+        self.strut.map_or(k, |strut| k * strut.stiffness_n_m / (k + strut.stiffness_n_m))
+    }
+
+    /// Stands at rest where the ground is so far above the tyre of a hub at its place [m]: takes its load, and squeezes.
+    pub fn stand(&mut self, above_m: f64) {
+        let level_m = self.strut.map_or(0.0, |strut| strut.level_m);
+        let load_n = (self.standing_n_m() * (above_m + level_m)).max(0.0);
+        if let Some(strut) = &mut self.strut {
+            strut.squeezed_m = load_n / strut.stiffness_n_m;
+        }
+        self.touch.load_n = load_n;
+        self.touch.deflection_m = above_m - self.raised_m();
+    }
+
+    /// Lets rut and suspension follow for a step.
+    pub fn settle(&mut self, step_s: f64) {
+        self.sinkage_m += step_s * self.sinking_m_s;
+        if let Some(strut) = &mut self.strut {
+            strut.squeezed_m += step_s * strut.rate_m_s;
+        }
     }
 
     /// Energy in its tyres [J].

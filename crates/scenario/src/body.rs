@@ -5,7 +5,8 @@ use crate::error::ScenarioError;
 use crate::plugins::bounded;
 use crate::schema::{FidelityFile, ScenarioFile, VehicleFile};
 use headland_body::{
-    AxleBody, BodyError, Chassis, Differential, Payload, RunError, Steering, SteeringMode, check, simulate,
+    AxleBody, BodyError, Chassis, Differential, Payload, RunError, Steering, SteeringMode, Suspension, check,
+    simulate,
 };
 use headland_plugin::Bound;
 use headland_sim::{Cycle, Model, Outcome};
@@ -64,6 +65,14 @@ pub struct AxleBodyFile {
     pub cornering_stiffness_per_rad: f64,
     pub relaxation_length_m: f64,
     pub differential: DifferentialFile,
+    pub suspension: Option<SuspensionFile>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename = "suspension")]
+pub struct SuspensionFile {
+    pub stiffness_n_m: f64,
+    pub damping_n_s_m: f64,
 }
 
 /// What simulates a scenario.
@@ -116,12 +125,14 @@ const BOUNDS: [(&str, Bound); 9] = [
 ];
 
 /// Bounds of those of each of its axles.
-const AXLE_BOUNDS: [(&str, Bound); 5] = [
+const AXLE_BOUNDS: [(&str, Bound); 7] = [
     ("damping_n_s_m", Bound::NotNegative),
     ("friction", Bound::Within(0.01, 3.0)),
     ("slip_stiffness", Bound::Positive),
     ("cornering_stiffness_per_rad", Bound::Positive),
     ("relaxation_length_m", Bound::Within(0.01, 10.0)),
+    ("suspension.stiffness_n_m", Bound::Positive),
+    ("suspension.damping_n_s_m", Bound::Positive),
 ];
 
 /// The body of a vehicle; `None` where it has none.
@@ -175,6 +186,10 @@ fn chassis(document: &Document, vehicle: &VehicleFile) -> Result<Option<Chassis>
                 cornering_stiffness_per_rad: axle.cornering_stiffness_per_rad,
                 relaxation_length_m: axle.relaxation_length_m,
                 differential: differential(axle.differential),
+                suspension: axle.suspension.as_ref().map(|own| Suspension {
+                    stiffness_n_m: own.stiffness_n_m,
+                    damping_n_s_m: own.damping_n_s_m,
+                }),
             })
             .collect(),
     }))

@@ -77,6 +77,11 @@ fn what_cannot_be_is_refused_where_it_stands() {
     assert!(step.contains("`step_s` is 0.2, expected at most") && step.contains("test.ron:29"), "{step}");
     let inertia = told("roll_inertia_kg_m2: 9e3", "roll_inertia_kg_m2: 9e5");
     assert!(inertia.contains("`roll_inertia_kg_m2` is 900000") && inertia.contains("other two"), "{inertia}");
+    let spring = told(
+        "differential: Open)",
+        "differential: Open, suspension: (stiffness_n_m: 3e5, damping_n_s_m: 0))",
+    );
+    assert!(spring.contains("`damping_n_s_m` is 0, expected more than 0"), "{spring}");
     let friction = told("friction: 0.8", "friction: -0.8");
     assert!(friction.contains("`friction` is -0.8, expected 0.01 to 3"), "{friction}");
     let weightless = told("mass_kg: 13000, rotating_mass_kg: 900", "mass_kg: 13000, rotating_mass_kg: 0");

@@ -40,6 +40,7 @@ pub fn chassis() -> Chassis {
         cornering_stiffness_per_rad: 6.0,
         relaxation_length_m: 0.7,
         differential: Differential::Locked,
+        suspension: None,
     };
     Chassis {
         roll_inertia_kg_m2: 9_000.0,

@@ -87,6 +87,7 @@ fn wheel<'a>(slip: f64, side: f64) -> Wheel<'a> {
         damping_n_s_m: 0.0,
         earlier: 0,
         footprint_m: 0.3,
+        strut: None,
         slip,
         side,
         sinkage_m: 0.0,

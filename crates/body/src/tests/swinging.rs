@@ -1,10 +1,10 @@
 //! How the vehicle swings: frequencies by the formula of a mass on two springs, the order of the step, the same bits.
 
 use super::{MASS_KG, channel, chassis, coast_down, cycle, last, model, run, soil, terrain};
-use crate::chassis::Chassis;
+use crate::chassis::{Chassis, Suspension};
 use crate::simulate;
 use headland_plugin::{Place, Spot, Surface, Terrain};
-use headland_sim::{Cycle, Model, Outcome, Phase, Until};
+use headland_sim::{Axles, Cycle, Model, Outcome, Phase, Until};
 use headland_soil::{Constant, LinearSpeedLaw};
 use headland_terrain::Flat;
 use std::f64::consts::TAU;
@@ -144,4 +144,67 @@ fn a_bump_leaves_a_ledger_that_closes() {
     assert!(took("tyre damping") > 100.0, "{:?}", outcome.ledger);
     let climbed_j = MASS_KG * super::GRAVITY * 0.03;
     assert!((took("slope") / climbed_j - 1.0).abs() < 0.1, "{} {climbed_j}", took("slope"));
+}
+
+fn sprung() -> Chassis {
+    let mut chassis = chassis();
+    for axle in &mut chassis.axles {
+        axle.suspension = Some(Suspension { stiffness_n_m: 300e3, damping_n_s_m: 15e3 });
+    }
+    chassis
+}
+
+#[test]
+fn a_suspension_takes_what_tyres_do_not_and_squeezes_by_its_load() {
+    let model = model(Box::new(StepUp), soil::<Constant>("(coefficient: 0.02)"));
+    let cycle = cycle(6.0, vec![Phase::Coast { until: Until::Elapsed(5.0) }], 1e-3);
+    let outcome = simulate(&model, &sprung(), &cycle, 0.0).unwrap();
+    assert!(outcome.ledger.relative_residual() < 1e-3, "{:?}", outcome.ledger);
+    let took = |name: &str| {
+        outcome.ledger.sinks.iter().find(|sink| sink.name == name).map_or(0.0, |sink| sink.energy_j)
+    };
+    assert!(took("suspension damping") > 3.0 * took("tyre damping"), "{:?}", outcome.ledger);
+    // At rest the springs share the load as their stiffness says: 300 kN/m squeeze by W / 300e3 in front.
+    let load_n = MASS_KG * super::GRAVITY * 2.0 / 3.6 / 2.0;
+    let squeezed_m = channel(&outcome, "axle_1_left_suspension_m")[0];
+    assert!((squeezed_m / (load_n / 300e3) - 1.0).abs() < 1e-6, "{squeezed_m}");
+    assert!((channel(&outcome, "axle_1_left_load_n")[0] / load_n - 1.0).abs() < 1e-6);
+}
+
+/// One mass m on k, behind it k_s with c_s: m z″ = −k δ, k δ = k_s x + c_s x′, δ + x = z (tyre without damping). The slowest
+/// root of the cubic is sought by Newton's method and held against zero crossings of the body.
+#[test]
+fn a_body_on_suspension_swings_as_the_cubic_of_its_springs_says() {
+    let mut sprung = sprung();
+    let mut model = sandy();
+    // The centre of gravity in the middle: bounce alone.
+    model.axles = Some(Axles::new(vec![super::axle(1.8), super::axle(-1.8)], 1.3, 0.7, 0.5).unwrap());
+    for axle in &mut sprung.axles {
+        axle.damping_n_s_m = 0.0;
+        axle.suspension = Some(Suspension { stiffness_n_m: 300e3, damping_n_s_m: 4e3 });
+    }
+    let k = 1e6 / (0.365 + 170.0 / 150.0);
+    let (m, ks, cs) = (MASS_KG / 4.0, 300e3, 4e3);
+    // cs m s³ + (k + ks) m s² + k cs s + k ks = 0, s = −a ± i ω: one real root r, then ω² from the quadratic left over.
+    let cubic = |s: f64| ((cs * m * s + (k + ks) * m) * s + k * cs) * s + k * ks;
+    let slope = |s: f64| (3.0 * cs * m * s + 2.0 * (k + ks) * m) * s + k * cs;
+    let mut root = -(k + ks) / cs;
+    for _ in 0..50 {
+        root -= cubic(root) / slope(root);
+    }
+    let half = 0.5 * ((k + ks) / cs + root);
+    let omega = (-k * ks / (cs * m * root) - half * half).sqrt();
+    let bump = model_on_step(model);
+    let cycle = cycle(6.0, vec![Phase::Coast { until: Until::Elapsed(5.0) }], 1e-3);
+    let outcome = simulate(&bump, &sprung, &cycle, 0.0).unwrap();
+    let times = outcome.trace.time_s();
+    let rows: Vec<usize> = (0..times.len()).filter(|row| times[*row] > 1.6).collect();
+    let heights = channel(&outcome, "height_m");
+    let (times, heights): (Vec<f64>, Vec<f64>) = rows.iter().map(|row| (times[*row], heights[*row])).unzip();
+    let found = peak(&times, &heights, (0.7 * omega, 1.3 * omega));
+    assert!((found / omega - 1.0).abs() < 0.02, "{found} {omega}");
+}
+
+fn model_on_step(model: Model) -> Model {
+    Model { terrain: Box::new(StepUp), ..model }
 }

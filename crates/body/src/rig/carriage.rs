@@ -1,0 +1,178 @@
+//! One step of the body, and what a run sees of it.
+
+use super::Rig;
+use crate::accounts::Step;
+use crate::track::heading_of;
+use crate::wheel::{Felt, Touch, Wheel};
+use crate::world::State;
+use headland_sim::{AxleMotion, Carriage, Motion, Push, Stepped};
+
+/// Resistances come to their whole force on this way: about a rest they are springs, and hold [m].
+///
+/// Source: Dahl, *A Solid Friction Model* (1968).
+const RESTING_M: f64 = 1e-3;
+/// A vehicle that has come to rest rocks on its tyres, and has set off beyond this speed [m/s].
+const SETS_OFF_M_S: f64 = 0.05;
+/// The same where brakes hold every wheel: a hard stop rocks harder, and what goes faster slides [m/s].
+const SLIDES_M_S: f64 = 0.5;
+
+impl Carriage for Rig<'_> {
+    fn motion(&self) -> Motion {
+        let mut place = self.track.place;
+        place.heading_rad = heading_of(self.state.ahead(), place.heading_rad);
+        let foot = self.foot();
+        (place.east_m, place.north_m) = (foot.x, foot.y);
+        if let Some(spot) = self.ground.spot(place.east_m, place.north_m) {
+            place.elevation_m = spot.height_m;
+        }
+        Motion {
+            position_m: self.track.position_m,
+            speed_m_s: if self.resting { 0.0 } else { self.state.speed_m_s() },
+            acceleration_m_s2: self.acceleration_m_s2,
+            driven_m_s: self.spin.driven_m_s(),
+            place,
+            resistance_n: self.wheels.iter().map(|wheel| wheel.felt.resistance_n).sum(),
+            slip: self.slip(),
+        }
+    }
+
+    fn axle(&self, index: usize) -> AxleMotion {
+        let own = || self.wheels.iter().filter(|wheel| wheel.axle == index);
+        let sum = |of: &dyn Fn(&Wheel) -> f64| own().map(of).sum::<f64>();
+        let wheels = own().count() as f64;
+        AxleMotion {
+            load_n: sum(&|wheel| wheel.touch.load_n),
+            slip: sum(&|wheel| wheel.slip) / wheels,
+            traction_n: sum(&|wheel| wheel.felt.gross_n),
+            resistance_n: sum(&|wheel| wheel.felt.resistance_n),
+            sinkage_m: sum(&|wheel| wheel.felt.rut_m) / wheels,
+        }
+    }
+
+    fn advance(&mut self, push: &Push, step_s: f64) -> Stepped {
+        let mass_j = self.load(push);
+        let before = self.state;
+        let speed_m_s = before.speed_m_s();
+        self.aim(step_s);
+        self.touch();
+        self.feel(step_s);
+        self.way = (self.way + step_s * speed_m_s / RESTING_M) / (1.0 + step_s * speed_m_s.abs() / RESTING_M);
+        let rolled: Vec<f64> = self.spin.wheels_m_s.clone();
+        let turned =
+            self.spin.advance(push.drive_n, push.brake_n, |wheel| self.wheels[wheel].felt.gross_n, step_s);
+        let (ahead, hitch) = (before.ahead(), self.hitch());
+        let pulled = ahead * (push.hitch_n - self.way * push.drawbar_n);
+        let mut force = ahead * (push.free_n - self.way * push.resistance_n) + pulled;
+        let mut moment = (hitch - before.centre).cross(pulled);
+        for (index, wheel) in self.wheels.iter().enumerate() {
+            let (own, held) = (wheel.force_n(), wheel.touch.along * (-self.way * wheel.felt.resistance_n));
+            force += own + held;
+            moment += (wheel.touch.point - before.centre).cross(own);
+            moment += (wheel.touch.hub() - before.centre).cross(held);
+            // What spins a wheel up turns the vehicle back.
+            let inertia = self.spin.masses_kg[index] * wheel.touch.height_m;
+            moment -= wheel.touch.across * (inertia * self.spin.changes_m_s2[index]);
+        }
+        self.world.step(force, moment, step_s);
+        self.state = self.world.state();
+        let step = Step {
+            before: &before,
+            after: &self.state,
+            lasts_s: step_s,
+            way: self.way,
+            weight_n: self.mass_kg * self.model.gravity_m_s2,
+            hitch,
+            turned,
+        };
+        let rolling = |wheel: usize| 0.5 * (rolled[wheel] + self.spin.wheels_m_s[wheel]);
+        let mut stepped = step.work(&self.wheels, rolling, &mut self.own);
+        stepped.mass_j = -mass_j;
+        for wheel in &mut self.wheels {
+            wheel.settle(step_s);
+        }
+        self.track.follow(self.foot());
+        let after_m_s = self.state.speed_m_s();
+        self.acceleration_m_s2 = Some((after_m_s - speed_m_s) / step_s);
+        self.resting = if self.resting {
+            let held = self.spin.wheels_m_s.iter().all(|speed| *speed == 0.0);
+            after_m_s.abs() <= if held { SLIDES_M_S } else { SETS_OFF_M_S }
+        } else {
+            after_m_s * speed_m_s <= 0.0
+        };
+        self.look(step_s);
+        stepped
+    }
+
+    fn trouble(&self) -> Option<String> {
+        self.trouble.clone()
+    }
+
+    fn kinetic_j(&self) -> f64 {
+        self.world.kinetic_j() + self.spin.kinetic_j()
+    }
+
+    fn accounts(&self) -> Vec<(&'static str, f64)> {
+        vec![
+            ("side slip", self.own.side_j),
+            ("tyre damping", self.own.damping_j),
+            ("tyre springs", self.spring_j() - self.first_spring_j),
+            ("suspension damping", self.own.suspension_j),
+            ("suspension springs", self.strut_j() - self.first_strut_j),
+        ]
+    }
+
+    fn channels(&self) -> Vec<String> {
+        let whole =
+            ["roll_rad", "pitch_rad", "yaw_rate_rad_s", "side_speed_m_s", "path_offset_m", "height_m"];
+        let mut names: Vec<String> = whole.map(str::to_owned).into();
+        for wheel in &self.wheels {
+            names.extend(WHEEL_CHANNELS.map(|what| format!("{}_{what}", wheel.name)));
+            names.extend(wheel.strut.map(|_| format!("{}_suspension_m", wheel.name)));
+        }
+        names
+    }
+
+    fn write(&self, row: &mut Vec<f64>) {
+        let State { turning, velocity, centre, .. } = self.state;
+        let (ahead, left, up) = (self.state.ahead(), self.state.left(), self.state.up());
+        row.extend([
+            // The right side down, and the nose up, count positive.
+            left.z.atan2(up.z),
+            ahead.z.asin(),
+            // As headings, clockwise.
+            -turning.z,
+            velocity.dot(left),
+            self.track.left_m,
+            centre.z,
+        ]);
+        for wheel in &self.wheels {
+            let Touch { load_n, deflection_m, steer_rad, .. } = wheel.touch;
+            let Felt { gross_n, side_n, resistance_n, rut_m, .. } = wheel.felt;
+            row.extend([
+                load_n,
+                wheel.slip,
+                (-wheel.side).clamp(-1.0, 1.0).asin(),
+                gross_n,
+                side_n,
+                resistance_n,
+                rut_m,
+                deflection_m,
+                steer_rad,
+            ]);
+            row.extend(wheel.strut.map(|strut| strut.squeezed_m));
+        }
+    }
+}
+
+/// What is written of a wheel.
+const WHEEL_CHANNELS: [&str; 9] = [
+    "load_n",
+    "slip",
+    "slip_angle_rad",
+    "traction_n",
+    "side_force_n",
+    "resistance_n",
+    "sinkage_m",
+    "deflection_m",
+    "steer_rad",
+];

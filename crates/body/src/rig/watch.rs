@@ -1,0 +1,62 @@
+//! What ends a run before its cycle does.
+
+use super::Rig;
+use crate::BodyError;
+use crate::wheel::Wheel;
+
+/// A vehicle that leans further than this has overturned: none that works stands so [cosine of 60°].
+const OVERTURNED: f64 = 0.5;
+/// Wheels that slip more than the limit for this long only dig [s].
+const DIGS_S: f64 = 1.0;
+/// A vehicle this many times the driver's look ahead beside its path has lost it.
+const LOST: f64 = 2.0;
+
+impl Rig<'_> {
+    /// What is wrong after a step.
+    pub(super) fn look(&mut self, step_s: f64) {
+        let Some(told) = self.wrong(step_s) else { return };
+        self.trouble.get_or_insert(told);
+    }
+
+    fn wrong(&mut self, step_s: f64) -> Option<String> {
+        if let Some(wheel) = self.wheels.iter().find(|wheel| wheel.felt.gross_n.is_nan()) {
+            let load_n = wheel.touch.load_n;
+            return Some(format!(
+                "{} sinks to its hub: the ground does not carry its {load_n:.0} N",
+                wheel.told
+            ));
+        }
+        let state = &self.state;
+        if !(state.velocity.is_finite() && state.turning.is_finite() && state.centre.is_finite()) {
+            return Some("the motion is no finite number: a shorter step may help".to_owned());
+        }
+        if state.up().z < OVERTURNED {
+            let aside = if state.left().z.abs() > state.ahead().z.abs() { "its side" } else { "its end" };
+            return Some(format!("the vehicle overturned onto {aside}"));
+        }
+        if self.ground.turned(&self.track.place) {
+            return Some(BodyError::NoSurface { position_m: self.track.position_m }.to_string());
+        }
+        let lost_m = LOST * self.steer.look_ahead_m();
+        if self.track.left_m.abs() > lost_m {
+            let left_m = self.track.left_m.abs();
+            return Some(format!("the vehicle is {left_m:.1} m beside its path: it cannot steer so tightly"));
+        }
+        self.digging_s = if self.slip() > self.axles.slip_limit { self.digging_s + step_s } else { 0.0 };
+        (self.digging_s > DIGS_S).then(|| {
+            let most_n: f64 = self.wheels.iter().map(|wheel| wheel.felt.gross_n).sum();
+            format!(
+                "slip past the limit: with more than the {} that the vehicle may have the ground gives its driven \
+                 wheels {most_n:.0} N, and they are asked for more",
+                self.axles.slip_limit
+            )
+        })
+    }
+
+    /// Mean slip of the driven wheels.
+    pub(super) fn slip(&self) -> f64 {
+        let driven = |wheel: &&Wheel| self.axles.list()[wheel.axle].lead.is_some();
+        let count = self.wheels.iter().filter(driven).count() as f64;
+        self.wheels.iter().filter(driven).map(|wheel| wheel.slip).sum::<f64>() / count
+    }
+}

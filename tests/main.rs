@@ -4,6 +4,8 @@
 
 #[path = "whole/commands.rs"]
 mod commands;
+#[path = "whole/cvt_map.rs"]
+mod cvt_map;
 #[path = "whole/days.rs"]
 mod days;
 #[path = "whole/files.rs"]

@@ -7,6 +7,7 @@
 
 pub mod clusters;
 pub mod coastdown;
+pub mod cvt_map;
 pub mod fit;
 pub mod least_squares;
 pub mod separable;

@@ -50,6 +50,8 @@ pub enum Command {
     Coastdown(CoastdownOptions),
     /// Run many variants, cycles and grounds and compare them
     Batch(BatchOptions),
+    /// Make the map of engine speeds of a `MappedCvt` from a recording
+    CvtMap(CvtMapOptions),
     /// Draw the ground of a scenario and the path over it
     Terrain(TerrainOptions),
     /// A built-in example that needs no file
@@ -166,6 +168,38 @@ pub struct BatchOptions {
     /// Throw away what is finished in the folder and begin again
     #[arg(long)]
     pub anew: bool,
+}
+
+/// Options of `headland cvt-map`.
+#[derive(Args, Debug)]
+pub struct CvtMapOptions {
+    /// Description of the recording
+    #[arg(value_name = "RECORDING.ron")]
+    pub recording: PathBuf,
+    /// The map, for a scenario to include
+    #[arg(long, value_name = "FILE.ron")]
+    pub out: PathBuf,
+    /// Speeds of the map
+    #[arg(long, value_name = "N", default_value_t = 12)]
+    pub speeds: usize,
+    /// Forces of the map
+    #[arg(long, value_name = "N", default_value_t = 8)]
+    pub forces: usize,
+    /// Samples that a node needs within half a cell
+    #[arg(long, value_name = "N", default_value_t = 10)]
+    pub least_samples: usize,
+    /// Samples slower than this are left out, m/s
+    #[arg(long, value_name = "SPEED", default_value_t = 0.3)]
+    pub lowest_speed: f64,
+    /// Engine to wheels, where the force comes from the engine's torque
+    #[arg(long, value_name = "SHARE", default_value_t = 0.88)]
+    pub efficiency: f64,
+    /// Torque that the transmission takes without load, N m, where the force comes from the engine's torque
+    #[arg(long, value_name = "TORQUE", default_value_t = 0.0)]
+    pub idle_torque: f64,
+    /// Torque that the shares `actual_torque` and `friction_torque` are of, N m
+    #[arg(long, value_name = "TORQUE")]
+    pub reference_torque: Option<f64>,
 }
 
 /// Options of `headland terrain`.

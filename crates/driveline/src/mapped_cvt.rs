@@ -17,7 +17,7 @@ use headland_plugin::{
 use serde::Deserialize;
 use std::path::Path;
 
-const OWN: [Parameter; 9] = [
+const OWN: [Parameter; 10] = [
     parameter("speeds_m_s", "[m/s]", "speeds of the map, two or more, increasing, v")
         .must_be(Bound::NotNegative)
         .usually(0.0, 20.0),
@@ -31,6 +31,11 @@ const OWN: [Parameter; 9] = [
     )
     .must_be(Bound::NotNegative)
     .usually(0.0, 300.0),
+    parameter(
+        "map",
+        "(speeds_m_s, forces_n, engine_speeds_rad_s, covered_share)",
+        "or instead the three, in a file of their own that `headland cvt-map` made",
+    ),
     parameter("transmission_efficiency", "1", "engine to wheels, η")
         .must_be(Bound::Efficiency)
         .usually(0.7, 0.98),
@@ -64,14 +69,30 @@ const PARAMETERS: [Parameter; ENGINE.len() + OWN.len()] = join(&[&ENGINE, &OWN])
 #[serde(deny_unknown_fields)]
 pub struct MappedCvt {
     engine: Engine,
+    #[serde(default)]
     speeds_m_s: Vec<f64>,
+    #[serde(default)]
     forces_n: Vec<f64>,
+    #[serde(default)]
     engine_speeds_rad_s: Vec<Vec<f64>>,
+    #[serde(default)]
+    map: Option<Map>,
     transmission_efficiency: f64,
     idle_torque_n_m: f64,
     max_force_n: f64,
     wheel_radius_m: f64,
     rotating_mass_kg: f64,
+    #[serde(default = "whole", rename = "covered_share")]
+    _covered_share: f64,
+}
+
+/// A map in a file of its own, as `headland cvt-map` writes it.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename = "map")]
+struct Map {
+    speeds_m_s: Vec<f64>,
+    forces_n: Vec<f64>,
+    engine_speeds_rad_s: Vec<Vec<f64>>,
     #[serde(default = "whole", rename = "covered_share")]
     _covered_share: f64,
 }
@@ -93,6 +114,20 @@ impl Plugin for MappedCvt {
 
     fn settle(&mut self, _: &Path) -> Result<(), Refusal> {
         self.engine.settle()?;
+        let lists =
+            !(self.speeds_m_s.is_empty() && self.forces_n.is_empty() && self.engine_speeds_rad_s.is_empty());
+        match self.map.take() {
+            Some(_) if lists => return Err(refuse("map", "given beside its lists", "one of the two")),
+            Some(map) => {
+                (self.speeds_m_s, self.forces_n) = (map.speeds_m_s, map.forces_n);
+                self.engine_speeds_rad_s = map.engine_speeds_rad_s;
+            }
+            None if !lists => {
+                let expected = "it, or `speeds_m_s`, `forces_n` and `engine_speeds_rad_s`";
+                return Err(refuse("map", "not given", expected));
+            }
+            None => {}
+        }
         increasing("speeds_m_s", &self.speeds_m_s, 2)?;
         increasing("forces_n", &self.forces_n, 2)?;
         let rows = &self.engine_speeds_rad_s;

@@ -87,3 +87,23 @@ proptest! {
         prop_assert!(delivery.force_n * force_n >= 0.0 && delivery.force_n.abs() <= force_n.abs() + 1e-9);
     }
 }
+
+#[test]
+fn a_map_may_stand_in_a_file_of_its_own_and_not_beside_its_lists() {
+    let lists = "speeds_m_s: [0, 2, 4], forces_n: [-50e3, 0, 50e3], \
+                 engine_speeds_rad_s: [[90, 100, 120], [100, 110, 160], [0, 150, 190]]";
+    let rest = "transmission_efficiency: 0.85, idle_torque_n_m: 30, max_force_n: 100e3, wheel_radius_m: 0.93, \
+                rotating_mass_kg: 0";
+    let settled = |map: &str| {
+        let text = format!("(engine: {}, {map} {rest})", engine::tests::TEXT);
+        let mut cvt: MappedCvt = ron::Options::default()
+            .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
+            .from_str(&text)
+            .unwrap();
+        cvt.settle(Path::new(".")).map(|()| cvt).map_err(|refusal| refusal.to_string())
+    };
+    let own = settled(&format!("map: ({lists}, covered_share: 0.9),")).unwrap();
+    assert_eq!(own.engine_rad_s(3.0, 25e3), cvt().engine_rad_s(3.0, 25e3));
+    assert!(settled(&format!("map: ({lists}), {lists},")).unwrap_err().contains("`map` is given beside"));
+    assert!(settled("").unwrap_err().contains("`map` is not given"));
+}

@@ -5,6 +5,7 @@ pub mod calibrate;
 pub mod check;
 pub mod coastdown;
 pub mod compare;
+pub mod cvt_map;
 pub mod demo;
 pub mod diagnose;
 pub mod plugins;

@@ -4,6 +4,7 @@ mod buggy;
 mod car;
 mod study;
 mod table;
+mod tractor;
 mod truck;
 mod vehicle;
 
@@ -17,6 +18,7 @@ pub fn page(registry: &Registry, scenarios: &Path, seed: u64, say: Say) -> Resul
     let parts = [
         car::part(registry, scenarios, say)?,
         truck::part(registry, scenarios, say)?,
+        tractor::part(scenarios, say)?,
         study::part(registry, scenarios, seed, say)?,
         buggy::part(scenarios, seed, say)?,
     ];

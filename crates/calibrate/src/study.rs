@@ -145,6 +145,27 @@ impl<'a> Study<'a> {
         recording: &Recording,
         registry: &'a Registry,
     ) -> Result<Self, StudyError> {
+        let study = Self::of_any(scenario, recording, registry)?;
+        match study.runs.iter().find(|run| run.signals.is_empty()) {
+            Some(run) => Err(StudyError::NothingToCompare {
+                run: run.id.clone(),
+                drive: drive_name(run.how.drive),
+                measured: run.trace.channels().iter().map(|channel| channel.name.clone()).collect(),
+                wanted: signals(run.how.drive).iter().map(|name| (*name).to_owned()).collect(),
+            }),
+            None => Ok(study),
+        }
+    }
+
+    /// As [`Study::new`], though a run may hold nothing that the model predicts.
+    ///
+    /// # Errors
+    /// [`StudyError`] where a run cannot drive the model.
+    pub fn of_any(
+        scenario: &'a Scenario,
+        recording: &Recording,
+        registry: &'a Registry,
+    ) -> Result<Self, StudyError> {
         let model = scenario.model(registry)?;
         let mut notes = Vec::new();
         let mut runs = Vec::new();
@@ -436,14 +457,6 @@ fn measured(
         .map(|name| (*name).to_owned())
         .collect();
     let signals = predicted(signals, model, &trace);
-    if signals.is_empty() {
-        return Err(StudyError::NothingToCompare {
-            run: run.id.clone(),
-            drive: drive_name(drive),
-            measured: trace.channels().iter().map(|channel| channel.name.clone()).collect(),
-            wanted: wanted.iter().map(|name| (*name).to_owned()).collect(),
-        });
-    }
     let reversed_from_m = run.reversed.then(|| match trace.get("position_m") {
         // Positions that fall are those of the path itself; those that grow begin at its end.
         Some([first, .., last]) if last < first => *first,

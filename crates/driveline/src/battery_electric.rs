@@ -235,6 +235,10 @@ impl Driveline for BatteryElectric {
         let share = if drives { self.gear_efficiency } else { 1.0 / self.gear_efficiency };
         Some(torque_n_m * self.leverage_per_m(1.0) * share)
     }
+
+    fn battery_capacity_j(&self) -> Option<f64> {
+        Some(self.store.energy_j(1.0))
+    }
 }
 
 #[cfg(test)]

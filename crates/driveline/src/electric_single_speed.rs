@@ -224,6 +224,10 @@ impl Driveline for ElectricSingleSpeed {
         let gear = if drives { self.gear_efficiency } else { 1.0 / self.gear_efficiency };
         Some(torque_n_m * self.leverage_per_m() * gear)
     }
+
+    fn battery_capacity_j(&self) -> Option<f64> {
+        Some(self.open_circuit_voltage_v * self.capacity_a_h * S_PER_H)
+    }
 }
 
 #[cfg(test)]

@@ -18,7 +18,9 @@
 //! Leaves out engine dynamics, speed-dependent efficiency, losses without load and limits of the ratio.
 
 use crate::full_load::{FullLoad, Point};
-use headland_plugin::{Bound, Card, Delivery, Demand, Driveline, Plugin, Readings, Refusal, parameter};
+use headland_plugin::{
+    Bound, Card, Delivery, Demand, Driveline, Plugin, Readings, Refusal, Shaft, parameter,
+};
 use serde::Deserialize;
 use std::f64::consts::PI;
 use std::path::Path;
@@ -193,6 +195,17 @@ impl Driveline for EngineCvt {
             ..Readings::NONE
         };
         delivery
+    }
+
+    fn force_of_shaft_n(&self, shaft: &Shaft) -> Option<f64> {
+        let others = self.accessory_power_w
+            + shaft.auxiliary_power_w / self.alternator_efficiency
+            + shaft.shaft_power_w;
+        let power = shaft.torque_n_m * shaft.speed_rad_s - others;
+        let eta = self.transmission_efficiency;
+        let force = (if power > 0.0 { power * eta } else { power / eta }) / shaft.wheel_speed_m_s;
+        // Beyond the greatest force, as at a standstill, a clutch takes the power and not the wheels.
+        (force.abs() <= self.max_force_n).then_some(force)
     }
 }
 

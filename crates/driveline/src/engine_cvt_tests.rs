@@ -181,3 +181,24 @@ fn an_engine_that_is_kept_at_a_speed_runs_at_it_and_gives_what_it_has_there() {
     let demand = Demand { engine_speed_rad_s: 170.0, shaft_power_w: 40e3, ..asked(10.0, 5e3) };
     assert!(imbalance_w(&engine(), &demand).abs() < 1e-6);
 }
+
+/// What an engine shows on its instruments makes the force that it was asked for, in overrun too.
+#[test]
+fn a_recorded_shaft_tells_the_force_that_went_with_it() {
+    for (speed_m_s, force_n) in [(8.0, 15e3), (3.0, 5e3), (12.0, -4e3)] {
+        let demand = Demand { auxiliary_power_w: 1200.0, shaft_power_w: 9e3, ..asked(speed_m_s, force_n) };
+        let delivery = engine().deliver(&demand, &[], &mut []);
+        let Readings { engine_torque_n_m, engine_speed_rad_s, .. } = delivery.readings;
+        let shaft = Shaft {
+            torque_n_m: engine_torque_n_m,
+            speed_rad_s: engine_speed_rad_s,
+            wheel_speed_m_s: speed_m_s,
+            auxiliary_power_w: 1200.0,
+            shaft_power_w: 9e3,
+        };
+        let told = engine().force_of_shaft_n(&shaft).unwrap();
+        assert!((told - delivery.force_n).abs() < 1e-6, "{told} of {force_n}");
+        // At a standstill no wheel takes the power.
+        assert_eq!(engine().force_of_shaft_n(&Shaft { wheel_speed_m_s: 1e-3, ..shaft }), None);
+    }
+}

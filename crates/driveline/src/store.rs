@@ -170,7 +170,6 @@ impl Store {
         self.voltages[index] + share * (self.voltages[index + 1] - self.voltages[index])
     }
 
-    #[cfg(test)]
     /// Energy in it at a charge [J]: ∫ U 3600 Q dS.
     pub(crate) fn energy_j(&self, charge: f64) -> f64 {
         let mut sum = 0.0;

@@ -28,6 +28,21 @@ pub struct Demand {
     pub engine_speed_rad_s: f64,
 }
 
+/// What was recorded of an engine, and of what takes its power beside the wheels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shaft {
+    /// Torque at the crankshaft [N m].
+    pub torque_n_m: f64,
+    /// Its speed [rad/s].
+    pub speed_rad_s: f64,
+    /// Speed of the wheels' circumference [m/s].
+    pub wheel_speed_m_s: f64,
+    /// Electric power that other consumers take [W].
+    pub auxiliary_power_w: f64,
+    /// Mechanical power that is taken beside the wheels: power take-off and hydraulics [W].
+    pub shaft_power_w: f64,
+}
+
 /// What a driveline shows on its instruments; NaN for those that it does not have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs, reason = "the names are those of the channels")]
@@ -159,6 +174,17 @@ pub trait Driveline: Debug + Send + Sync {
     /// Force at the wheels [N] that a recorded torque of its engine or motor [N m] makes; `None` where it cannot tell.
     fn force_of_torque_n(&self, torque_n_m: f64, speed_m_s: f64) -> Option<f64> {
         let _ = (torque_n_m, speed_m_s);
+        None
+    }
+
+    /// Force at the wheels [N] that a recorded power of its engine makes, whatever the ratio; `None` where it cannot tell.
+    fn force_of_shaft_n(&self, shaft: &Shaft) -> Option<f64> {
+        let _ = shaft;
+        None
+    }
+
+    /// Energy that its battery nominally holds between empty and full [J]; `None` where there is no state of charge.
+    fn battery_capacity_j(&self) -> Option<f64> {
         None
     }
 }

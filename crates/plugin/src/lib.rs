@@ -19,7 +19,7 @@ mod terrain;
 mod tyre;
 
 pub use card::{Bound, Card, Parameter, parameter};
-pub use driveline::{Delivery, Demand, Driveline, MAX_LOSSES, Readings};
+pub use driveline::{Delivery, Demand, Driveline, MAX_LOSSES, Readings, Shaft};
 pub use effect::{Action, Effect};
 pub use family::{BuildError, Entry, Family, closest};
 pub use management::{Consequence, Management, Outlook, Share, Stores};

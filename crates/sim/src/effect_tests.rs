@@ -142,6 +142,47 @@ fn slipping_wheels_turn_faster_and_take_power() {
     assert!(outcome.ledger.relative_residual() < 1e-9, "{:?}", outcome.ledger);
 }
 
+/// Gives nothing, as a driveline that nobody described.
+#[derive(Debug)]
+struct Idle;
+
+impl Driveline for Idle {
+    fn losses(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    fn source(&self) -> &'static str {
+        "none"
+    }
+
+    fn rotating_mass_kg(&self, _: bool) -> f64 {
+        0.0
+    }
+
+    fn deliver(&self, _: &Demand, _: &[f64], _: &mut [f64]) -> Delivery {
+        Delivery::NOTHING
+    }
+}
+
+/// The same slip: what moved the vehicle was 200 N, whoever gave them.
+#[test]
+fn wheels_of_a_recorded_motion_slip_by_the_force_that_it_took() {
+    let mut recorded = headland_trace::Trace::new((0..20).map(f64::from).collect()).unwrap();
+    recorded.push("speed_m_s", vec![10.0; 20], headland_trace::Origin::Measured).unwrap();
+    let slips = does(Action { slip_per_n: 5e-4, ..Action::default() });
+    let model = Model { driveline: Box::new(Idle), ..model(vec![slips]) };
+    let how = Replay {
+        drive: Drive::Speed,
+        also: Vec::new(),
+        window_s: None,
+        smoothing_s: 2.0,
+        step_s: 0.5,
+        reversed_from_m: None,
+    };
+    let trace = replay(&model, &recorded, &how).unwrap().trace;
+    assert!((trace.get("wheel_speed_m_s").unwrap()[10] - 10.0 / 0.9).abs() < 1e-9);
+}
+
 #[test]
 fn effects_learn_of_mass_and_area_that_others_add_in_whatever_order() {
     let adds = || does(Action { mass_kg: 50.0, drag_area_m2: 3.0, ..Action::default() });

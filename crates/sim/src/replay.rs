@@ -59,10 +59,13 @@ pub enum Inputs {
     DrawbarForce,
     Coasting,
     Brake,
+    /// The engine turns as it was recorded, whatever the driveline would have chosen. What it is compared with is part of
+    /// the model's answer otherwise, so it is among the circumstances only where somebody asks for it.
+    EngineSpeed,
 }
 
 impl Inputs {
-    /// Every circumstance.
+    /// Every circumstance that a model is told without being asked to.
     pub const ALL: [Self; 9] = [
         Self::Grade,
         Self::Heading,
@@ -87,6 +90,7 @@ impl Inputs {
             Self::DrawbarForce => &["drawbar_force_n"],
             Self::Coasting => &["coasting"],
             Self::Brake => &["brake"],
+            Self::EngineSpeed => &["engine_speed_rad_s"],
         }
     }
 
@@ -217,6 +221,7 @@ impl<'a> Tape<'a> {
                 Inputs::DrawbarForce => given.drawbar_force_n = Some(value(0)),
                 Inputs::Coasting => coasting = columns[0][index] >= 0.5,
                 Inputs::Brake => given.braking = columns[0][index] >= 0.5,
+                Inputs::EngineSpeed => given.engine_speed_rad_s = value(0),
             }
         }
         (given, coasting)

@@ -5,6 +5,7 @@ use crate::noise::{Noise, Noises, Shape};
 use crate::recorded::{Recorded, SLOWEST_M_S};
 use crate::rows::{Chunk, Row, chunks};
 use crate::said::Said;
+use crate::tails::Tails;
 use crate::voltage::change_v;
 use nalgebra::DVector;
 use serde::Serialize;
@@ -81,16 +82,18 @@ pub struct System {
     pub chunks: Vec<Chunk>,
     /// Measured minus modelled, with the nominal model.
     pub residual: Column,
-    /// Length of a block [s].
-    pub block_s: f64,
+    /// Length of a block of each balance [s].
+    pub blocks_s: Vec<f64>,
 }
 
 /// Rows wanted of a run.
 const ROWS_PER_RUN: f64 = 300.0;
 /// Gusts, a driver's foot, a rough surface: what lasts longer than this is no noise, it is physics [s].
 const LASTING_S: f64 = 5.0;
-/// Rows of a balance at most: more only take longer.
+/// Rows of a balance of powers at most: more only take longer.
 const MOST_ROWS: f64 = 16_000.0;
+/// Rows of a balance of forces at most: a drive in a town is braked every few seconds, and long blocks fit nowhere between.
+const MOST_ROWS_OF_MOTION: f64 = 20_000.0;
 /// Lower heating value that turns fuel into watts in residuals [J/kg]: diesel, EN 590; a scale only.
 pub const FUEL_J_KG: f64 = 42.8e6;
 
@@ -100,7 +103,7 @@ impl System {
         kinds: &[Kind],
         runs: &[Recorded],
         said: &[Said],
-        block_s: f64,
+        block_s: &dyn Fn(Kind) -> f64,
         allowed: &[Vec<bool>],
         fit: &[bool],
     ) -> Self {
@@ -111,14 +114,15 @@ impl System {
                 let usable = usable(*kind, run, said);
                 let usable: Vec<bool> =
                     usable.iter().zip(&allowed[index]).map(|(one, other)| *one && *other).collect();
-                own.extend(chunks(kept.len(), index, run.measured.trace.time_s(), &usable, block_s));
+                own.extend(chunks(kept.len(), index, run.measured.trace.time_s(), &usable, block_s(*kind)));
             }
             if own.iter().any(|chunk| fit[chunk.run]) {
                 kept.push(*kind);
                 all.extend(own);
             }
         }
-        let mut system = Self { kinds: kept, chunks: all, residual: Vec::new(), block_s };
+        let blocks_s = kept.iter().map(|kind| block_s(*kind)).collect();
+        let mut system = Self { kinds: kept, chunks: all, residual: Vec::new(), blocks_s };
         system.residual = system.residual_of(runs, said);
         system
     }
@@ -164,13 +168,30 @@ impl System {
 
     /// The noise that makes what is left of the runs that are `fit` most likely, balance by balance.
     pub fn noises(&self, left: &Column, fit: &[bool]) -> Noises {
+        self.noises_like(left, fit, None)
+    }
+
+    /// As [`System::noises`], of the kind that it was before.
+    pub fn noises_like(&self, left: &Column, fit: &[bool], before: Option<&Noises>) -> Noises {
+        let tails = before.and_then(|before| before.tails.as_ref());
         let of = |(number, kind): (usize, &Kind)| {
-            let own =
-                self.chunks.iter().zip(left).filter(|(chunk, _)| chunk.balance == number && fit[chunk.run]);
-            let most = (-self.block_s / LASTING_S).exp();
-            Noise::of(kind.shape(), most, &own.map(|(_, values)| values).collect::<Vec<_>>())
+            let own = || {
+                let all = self.chunks.iter().enumerate().zip(left);
+                all.filter(|((_, chunk), _)| chunk.balance == number && fit[chunk.run])
+            };
+            let brief = before.is_some_and(|before| before.brief[number]);
+            let most = if brief { 0.0 } else { (-self.blocks_s[number] / LASTING_S).exp() };
+            let residuals: Vec<&DVector<f64>> = own().map(|(_, values)| values).collect();
+            let weights: Vec<Option<&DVector<f64>>> =
+                own().map(|((index, _), _)| tails.map(|tails| tails.weights(index))).collect();
+            Noise::weighted(kind.shape(), most, &residuals, &weights)
         };
-        Noises(self.kinds.iter().enumerate().map(of).collect())
+        let mut noises = Noises::normal(self.kinds.iter().enumerate().map(of).collect());
+        if let Some(before) = before {
+            noises.tails = tails.and_then(|_| Tails::of(&self.chunks, &noises, left));
+            noises.brief.clone_from(&before.brief);
+        }
+        noises
     }
 
     /// Mean square of a column over the runs that are `fit`, balance by balance.
@@ -210,14 +231,18 @@ pub fn kinds(runs: &[Recorded], said: &[Said]) -> Vec<Kind> {
         .collect()
 }
 
-/// Length of a block: short enough to see what happens, long enough to hold two samples.
-pub fn block_s(runs: &[Recorded]) -> f64 {
+/// Length of a block of a balance: short enough to see what happens, long enough to hold two samples.
+pub fn block_s(kind: Kind, runs: &[Recorded]) -> f64 {
     let mut durations: Vec<f64> = runs.iter().map(|run| run.measured.trace.duration_s()).collect();
     durations.sort_by(f64::total_cmp);
     let median = durations.get(durations.len() / 2).copied().unwrap_or(1.0);
     let period = longest_period_s(runs);
     let whole: f64 = durations.iter().sum();
-    (median / ROWS_PER_RUN).max(0.04).min(1.0_f64.max(2.0 * period)).max(2.0 * period).max(whole / MOST_ROWS)
+    let most = match kind {
+        Kind::Parity | Kind::Slip | Kind::Motion => MOST_ROWS_OF_MOTION,
+        Kind::Battery | Kind::Voltage | Kind::Fuel => MOST_ROWS,
+    };
+    (median / ROWS_PER_RUN).max(0.04).min(1.0_f64.max(2.0 * period)).max(2.0 * period).max(whole / most)
 }
 
 /// Sampling period of the slowest run [s].

@@ -116,9 +116,12 @@ impl Factor {
     /// The diagonal of the inverse, and what stands to the left of it; of the first row nothing does.
     pub fn inverse_diagonals(&self) -> (DVector<f64>, DVector<f64>) {
         let Self(factor) = self;
-        // Z = D⁻¹ + (I − Lᵀ/d) Z within the band, from the last row up.
-        let mut inverse = Band::zeros(factor.size, factor.width);
-        let mut below = vec![0.0; factor.width];
+        // Z = D⁻¹ + (I − Lᵀ/d) Z within the band, from the last row up. Both halves are kept, so that rows lie in one piece:
+        // row i holds the columns i − width ..= i + width.
+        let width = factor.width;
+        let place = |row: usize, column: usize| row * (2 * width + 1) + width + column - row;
+        let mut inverse = vec![0.0; factor.size * (2 * width + 1)];
+        let mut below = vec![0.0; width];
         for column in (0..factor.size).rev() {
             let last = (column + factor.width).min(factor.size - 1);
             let own = self.diagonal(column);
@@ -127,20 +130,16 @@ impl Factor {
             }
             let below = &below[..last - column];
             for row in (column..=last).rev() {
-                let mut sum = 0.0;
-                for (entry, other) in below.iter().zip(column + 1..) {
-                    let (high, low) = if row >= other { (row, other) } else { (other, row) };
-                    sum += entry * inverse.entries[inverse.place(high, low)];
-                }
+                let first = place(row, column + 1);
+                let sum = dot(below, &inverse[first..first + below.len()]);
                 let lone = if row == column { own.recip() } else { 0.0 };
-                let place = inverse.place(row, column);
-                inverse.entries[place] = (lone - sum) / own;
+                let value = (lone - sum) / own;
+                inverse[place(row, column)] = value;
+                inverse[place(column, row)] = value;
             }
         }
-        let own = DVector::from_fn(factor.size, |row, _| inverse.entries[inverse.place(row, row)]);
-        let beside = |row: usize| {
-            if row == 0 || factor.width == 0 { 0.0 } else { inverse.entries[inverse.place(row, row - 1)] }
-        };
+        let own = DVector::from_fn(factor.size, |row, _| inverse[place(row, row)]);
+        let beside = |row: usize| if row == 0 || width == 0 { 0.0 } else { inverse[place(row, row - 1)] };
         (own, DVector::from_fn(factor.size, |row, _| beside(row)))
     }
 }

@@ -181,7 +181,8 @@ impl<'a> Case<'a> {
 
     /// The rows of every balance, of samples that are `usable`.
     pub fn system(&self, usable: &[Vec<bool>]) -> System {
-        System::new(&self.kinds, &self.runs, &self.nominal, block_s(&self.runs), usable, &self.fit)
+        let block_s = |kind| block_s(kind, &self.runs);
+        System::new(&self.kinds, &self.runs, &self.nominal, &block_s, usable, &self.fit)
     }
 
     /// Names of the channels of all runs.

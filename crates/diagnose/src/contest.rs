@@ -1,10 +1,11 @@
 //! One cause more: the trials beside a set of causes, the best first.
 
+use crate::balance::Kind;
 use crate::catalogue::Form;
 use crate::gram::{Column, Reduced, Whitened};
 use crate::jumps::Jumps;
 use crate::noise::{Noise, Noises};
-use crate::profile::Spread;
+use crate::profile::{COARSE, Spread};
 use crate::search::rank;
 use crate::state::{Part, Stand, State};
 use crate::trial::Trial;
@@ -75,7 +76,9 @@ impl State<'_> {
         });
         if let Some(best) = open.first().map(|one| one.0) {
             let close = open.iter().filter(|one| one.0 > best - CLOSE).count();
-            open.truncate(FINALISTS.max(close.min(2 * FINALISTS)));
+            // Where rows stray, what could be found without is known, and each trial takes long.
+            let most = if stand.noises.tails.is_some() { FINALISTS / 2 } else { 2 * FINALISTS };
+            open.truncate(close.clamp(most.min(FINALISTS), most));
         }
         let mut finalists: Vec<(Part, Noises)> =
             open.into_iter().map(|(_, part)| (part, stand.noises.clone())).collect();
@@ -112,7 +115,7 @@ impl State<'_> {
             open.flat_map(|trial| [(trial, &stand.noises), (trial, &quiet)]).collect();
         let part = |(trial, noises): (&Trial, &Noises)| {
             let part = Part { trial: trial.clone(), spread: None };
-            let spread = self.best_spread(&part, stand, noises)?;
+            let spread = self.best_spread(&part, stand, noises, COARSE)?;
             Some((Part { spread: Some(spread), ..part }, noises.clone()))
         };
         let mut all: Vec<(Part, Noises)> = starts.into_par_iter().filter_map(part).collect();
@@ -134,17 +137,25 @@ impl State<'_> {
                 && !taken.contains(&cause.id)
                 && self.apart(trial, &stand.parts)
         });
-        let step = BLOCKS * self.system.block_s;
+        let of_battery = self.system.kinds.iter().position(|kind| *kind == Kind::Battery);
+        let Some(step) = of_battery.map(|number| BLOCKS * self.system.blocks_s[number]) else {
+            return Vec::new();
+        };
         let part = |trial: &Trial| {
             let size = SIZE * self.cause(trial).terms[0].scale;
-            let spread = Spread { length: LENGTHS * step, size, jumps: Some(Jumps::unknown(step)) };
+            let spread = Spread {
+                length: LENGTHS * step,
+                size,
+                knots_per_length: COARSE,
+                jumps: Some(Jumps::unknown(step)),
+            };
             (Part { trial: trial.clone(), spread: Some(spread) }, quiet.clone())
         };
         switched.map(part).collect()
     }
 
     /// The noise that neighbouring rows show of what a set leaves, by the median of their second differences.
-    fn quiet(&self, stand: &Stand) -> Noises {
+    pub fn quiet(&self, stand: &Stand) -> Noises {
         /// From the median of magnitudes to a standard deviation, for a normal distribution.
         const NORMAL: f64 = 1.4826;
         /// Rows that share no block lie so far apart.
@@ -170,11 +181,18 @@ impl State<'_> {
                 *noise
             }
         };
-        Noises(stand.noises.0.iter().enumerate().map(of).collect())
+        let each = stand.noises.each.iter().enumerate().map(of).collect();
+        Noises { each, ..stand.noises.clone() }
     }
 
     /// Length and size that make the recordings most likely: the length at the usual size first, then the size.
-    fn best_spread(&self, part: &Part, stand: &Stand, noises: &Noises) -> Option<Spread> {
+    pub fn best_spread(
+        &self,
+        part: &Part,
+        stand: &Stand,
+        noises: &Noises,
+        knots_per_length: f64,
+    ) -> Option<Spread> {
         const SIZES: [f64; 4] = [0.1, 0.3, 3.0, 10.0];
         let cause = self.cause(&part.trial);
         let mut parts = stand.parts.clone();
@@ -206,8 +224,9 @@ impl State<'_> {
         };
         let longest = profile.longest();
         let possible = lengths.iter().copied().filter(|length| *length < longest);
-        let (gain, spread) =
-            best_of(possible.map(|length| Spread { length, size: usual, jumps: None }).collect())?;
+        let (gain, spread) = best_of(
+            possible.map(|length| Spread { length, size: usual, knots_per_length, jumps: None }).collect(),
+        )?;
         let sizes = SIZES.iter().map(|share| Spread { size: share * usual, ..spread.clone() }).collect();
         let (other_gain, other) = best_of(sizes)?;
         Some(if other_gain > gain { other } else { spread })

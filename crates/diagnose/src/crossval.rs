@@ -5,6 +5,7 @@
 //! Source: Stone, *J. R. Stat. Soc. B* 36 (1974) 111, here over whole runs.
 
 use crate::gram::{Column, Whitened};
+use crate::profile::Widths;
 use crate::state::{Part, Stand, State};
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -43,7 +44,7 @@ impl State<'_> {
                 .iter()
                 .flatten()
                 .map(|(profile, spread)| {
-                    let made = profile.function(&whitened, chunks, &mask, spread, &places, &beta);
+                    let made = profile.function(&whitened, chunks, &mask, spread, &beta, Widths::Left);
                     profile.rows(self.system, &made)
                 })
                 .collect();
@@ -59,7 +60,7 @@ impl State<'_> {
                 for rows in &functions {
                     left -= &rows[index];
                 }
-                sum += whitened.whiteners.of(chunk).whiten(&left).norm_squared();
+                sum += whitened.whiteners.white(index, chunk, &left).norm_squared();
             }
             Some(sum)
         };

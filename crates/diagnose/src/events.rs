@@ -6,7 +6,6 @@
 
 use crate::Case;
 use crate::balance::{Kind, System};
-use crate::noise::Whitener;
 use crate::recorded::Recorded;
 use crate::rows::{Chunk, Row};
 use crate::search::Found;
@@ -55,8 +54,9 @@ pub fn events(case: &Case, system: &System, found: &Found) -> Vec<Event> {
         if system.kind(chunk) != Kind::Motion {
             return Vec::new();
         }
-        let boxes = Box::all(chunk, whiteners.of(chunk));
-        let mut left = whiteners.of(chunk).whiten(&found.left[index]);
+        let whiten = |rows: &DVector<f64>| whiteners.white(index, chunk, rows);
+        let boxes = Box::all(chunk, &whiten);
+        let mut left = whiten(&found.left[index]);
         let mut all = Vec::new();
         for _ in 0..MOST {
             let judged = boxes.iter().filter_map(|one| {
@@ -101,14 +101,14 @@ struct Box {
 
 impl Box {
     /// Every stretch of a chunk.
-    fn all(chunk: &Chunk, whitener: &Whitener) -> Vec<Self> {
+    fn all(chunk: &Chunk, whiten: &dyn Fn(&DVector<f64>) -> DVector<f64>) -> Vec<Self> {
         let rows = chunk.rows.len();
         let lengths = LENGTHS.into_iter().filter(|length| 2 * length <= rows);
         let places = lengths.flat_map(|length| (0..=rows - length).map(move |from| (from, length)));
         places
             .map(|(from, length)| {
                 let inside = |row: usize| f64::from((from..from + length).contains(&row));
-                let white = whitener.whiten(&DVector::from_fn(rows, |row, _| inside(row)));
+                let white = whiten(&DVector::from_fn(rows, |row, _| inside(row)));
                 Self { from, length, square: white.norm_squared(), white }
             })
             .collect()

@@ -58,7 +58,7 @@ impl Whitened {
                 x.set_column(column, &values[index]);
             }
             x.set_column(width, &residual[index]);
-            whiteners.of(chunk).whiten_all(&mut x);
+            whiteners.whiten(index, chunk, &mut x);
             x
         };
         let all = chunks.par_iter().enumerate().map(whiten).collect();
@@ -79,10 +79,10 @@ impl Whitened {
             .collect();
         let mut sum = DMatrix::zeros(self.width + 1, self.width + 1);
         let (mut log_determinant, mut rows) = (0.0, 0);
-        for (chunk, product) in chunks.iter().zip(products) {
+        for (number, (chunk, product)) in chunks.iter().zip(products).enumerate() {
             if let Some(product) = product {
                 sum += product;
-                log_determinant += self.whiteners.of(chunk).log_determinant(chunk.rows.len());
+                log_determinant += self.whiteners.log_determinant(number, chunk);
                 rows += chunk.rows.len();
             }
         }

@@ -40,6 +40,9 @@ mod search;
 mod sensors;
 mod sharpen;
 mod state;
+mod straying;
+mod student;
+mod tails;
 mod trial;
 mod unlisted;
 mod voltage;
@@ -89,6 +92,8 @@ pub fn diagnose(
     look.sharpen(&case)?;
     let events = spells(&case, &mut look, &sound, &braked)?;
     let Look { system, mut pool, found } = look;
+    case.step("strange rows")?;
+    let found = straying::straying(&case, &system, &pool, found);
     let found = unlisted::unlisted(&mut case, &system, &mut pool, found)?;
     let mut refined = refine::refine(&case, &system, &mut pool, &found)?;
     refine::spells(&case, &system, &events, &mut refined);
@@ -179,7 +184,7 @@ fn sensors_first(case: &mut Case, look: &mut Look, sound: &[Vec<bool>]) -> Resul
 
 /// The samples that are usable and lie in no spell.
 fn without(case: &Case, usable: &[Vec<bool>], events: &[events::Event]) -> Vec<Vec<bool>> {
-    let mut outside = events::outside(&case.runs, events, balance::block_s(&case.runs));
+    let mut outside = events::outside(&case.runs, events, balance::block_s(Kind::Motion, &case.runs));
     for (outside, usable) in outside.iter_mut().zip(usable) {
         for (outside, usable) in outside.iter_mut().zip(usable) {
             *outside &= usable;

@@ -9,6 +9,7 @@
 //! Source: Brockwell and Davis, *Time Series: Theory and Methods* (1991), section 5.3, the innovations of an ARMA process.
 
 use crate::rows::Chunk;
+use crate::tails::Tails;
 use nalgebra::{DMatrix, DVector};
 
 /// How the noise of the sensor comes through the weak form.
@@ -118,12 +119,24 @@ impl Noise {
 
     /// The noise that makes residuals (one vector a chunk) most likely; the process correlates neighbouring rows by `most`
     /// at most.
+    #[cfg(test)]
     pub fn of(shape: Shape, most: f64, residuals: &[&DVector<f64>]) -> Self {
+        Self::weighted(shape, most, residuals, &vec![None; residuals.len()])
+    }
+
+    /// The noise that makes residuals (one vector a chunk) most likely; the process correlates neighbouring rows by `most`
+    /// at most. Rows count as much as their weights say, or all alike.
+    pub fn weighted(
+        shape: Shape,
+        most: f64,
+        residuals: &[&DVector<f64>],
+        weights: &[Option<&DVector<f64>>],
+    ) -> Self {
         let nothing = Self { shape, sensor: 1.0, process: 0.0, persistence: 0.0 };
         let mut best = (f64::INFINITY, nothing);
         let mut place = (0.0, 0.0);
         let mut consider = |share: f64, persistence: f64, place: &mut (f64, f64)| {
-            if let Some(tried) = Self::with(shape, share, persistence, residuals)
+            if let Some(tried) = Self::with(shape, share, persistence, residuals, weights)
                 && tried.0 < best.0
             {
                 best = tried;
@@ -163,12 +176,18 @@ impl Noise {
     }
 
     /// Deviance of residuals at a share and a correlation, with the variance that suits best.
-    fn with(shape: Shape, share: f64, persistence: f64, residuals: &[&DVector<f64>]) -> Option<(f64, Self)> {
+    fn with(
+        shape: Shape,
+        share: f64,
+        persistence: f64,
+        residuals: &[&DVector<f64>],
+        weights: &[Option<&DVector<f64>>],
+    ) -> Option<(f64, Self)> {
         let unit = Self { shape, sensor: 1.0 - share, process: share, persistence };
         let whitener = unit.whitener(residuals.iter().map(|one| one.len()).max()?)?;
         let (mut sum, mut log_determinant, mut count) = (0.0, 0.0, 0usize);
-        for residual in residuals {
-            sum += whitener.norm_squared(residual.as_slice());
+        for (residual, weights) in residuals.iter().zip(weights) {
+            sum += whitener.norm_squared(residual.as_slice(), *weights);
             log_determinant += whitener.log_determinant(residual.len());
             count += residual.len();
         }
@@ -214,9 +233,9 @@ impl Whitener {
         }
     }
 
-    fn norm_squared(&self, values: &[f64]) -> f64 {
+    fn norm_squared(&self, values: &[f64], weights: Option<&DVector<f64>>) -> f64 {
         let mut sum = 0.0;
-        self.each(values, |_, white| sum += white * white);
+        self.each(values, |row, white| sum += weights.map_or(1.0, |weights| weights[row]) * white * white);
         sum
     }
 
@@ -227,11 +246,23 @@ impl Whitener {
         all
     }
 
-    /// L⁻¹ T X, column by column.
+    /// L⁻¹ T X, column by column; several side by side, since each row waits for the one before it.
     pub fn whiten_all(&self, values: &mut DMatrix<f64>) {
-        for mut column in values.column_iter_mut() {
-            let own: Vec<f64> = column.iter().copied().collect();
-            self.each(&own, |row, white| column[row] = white);
+        const LANES: usize = 8;
+        let rows = values.nrows();
+        for block in values.as_mut_slice().chunks_mut((LANES * rows).max(1)) {
+            let lanes = block.len() / rows;
+            let (mut before, mut one, mut two) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+            for (row, [left2, left1, own]) in self.factor.iter().take(rows).enumerate() {
+                for lane in 0..lanes {
+                    let entry = &mut block[lane * rows + row];
+                    let value = *entry;
+                    *entry =
+                        (value - self.persistence * before[lane] - left1 * one[lane] - left2 * two[lane])
+                            / own;
+                    (before[lane], two[lane], one[lane]) = (value, one[lane], *entry);
+                }
+            }
         }
     }
 
@@ -250,26 +281,66 @@ impl Whitener {
     }
 }
 
-/// The noise of several balances side by side, in the order of their numbers.
+/// The noise of several balances side by side.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Noises(pub Vec<Noise>);
+pub struct Noises {
+    /// In the order of the balances' numbers.
+    pub each: Vec<Noise>,
+    /// Where rows may stray further than a normal distribution lets them.
+    pub tails: Option<Tails>,
+    /// Balances in which nothing that lasts is noise: a function takes it.
+    pub brief: Vec<bool>,
+}
 
 /// What whitens the chunks of several balances.
 #[derive(Clone, Debug)]
-pub struct Whiteners(Vec<Whitener>);
+pub struct Whiteners {
+    each: Vec<Whitener>,
+    tails: Option<Tails>,
+}
 
 impl Noises {
+    /// Normal noise.
+    pub fn normal(each: Vec<Noise>) -> Self {
+        Self { brief: vec![false; each.len()], each, tails: None }
+    }
+
     /// What whitens these chunks.
     pub fn whiteners(&self, chunks: &[Chunk]) -> Option<Whiteners> {
         let longest = chunks.iter().map(|chunk| chunk.rows.len()).max().unwrap_or(0);
-        self.0.iter().map(|noise| noise.whitener(longest)).collect::<Option<_>>().map(Whiteners)
+        let each = self.each.iter().map(|noise| noise.whitener(longest)).collect::<Option<_>>()?;
+        Some(Whiteners { each, tails: self.tails.clone() })
     }
 }
 
 impl Whiteners {
-    /// That of a chunk's balance.
+    /// That of a chunk's balance, every row counting alike.
     pub fn of(&self, chunk: &Chunk) -> &Whitener {
-        &self.0[chunk.balance]
+        &self.each[chunk.balance]
+    }
+
+    /// Whitens the rows of a chunk of this number, column by column, and makes each count as much as it should.
+    pub fn whiten(&self, number: usize, chunk: &Chunk, values: &mut DMatrix<f64>) {
+        self.of(chunk).whiten_all(values);
+        let Some(tails) = &self.tails else { return };
+        for (row, weight) in tails.weights(number).iter().enumerate() {
+            values.row_mut(row).scale_mut(weight.sqrt());
+        }
+    }
+
+    /// As [`Whiteners::whiten`], of one column.
+    pub fn white(&self, number: usize, chunk: &Chunk, values: &DVector<f64>) -> DVector<f64> {
+        let white = self.of(chunk).whiten(values);
+        match &self.tails {
+            Some(tails) => white.zip_map(tails.weights(number), |white, weight| weight.sqrt() * white),
+            None => white,
+        }
+    }
+
+    /// ln |Σ| of a chunk of this number, less what a bound of the density takes, twice.
+    pub fn log_determinant(&self, number: usize, chunk: &Chunk) -> f64 {
+        let tails = self.tails.as_ref().map_or(0.0, |tails| tails.log_determinant(number));
+        self.of(chunk).log_determinant(chunk.rows.len()) + tails
     }
 }
 

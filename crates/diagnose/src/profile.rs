@@ -23,6 +23,8 @@ pub struct Spread {
     pub length: f64,
     /// Its standard deviation, in the unit of the cause's parameter.
     pub size: f64,
+    /// Knots to one length: between them it is straight.
+    pub knots_per_length: f64,
     /// Where it may jump.
     pub jumps: Option<Jumps>,
 }
@@ -50,6 +52,15 @@ pub struct Profile<'a> {
     pub extents: Vec<(f64, f64)>,
 }
 
+/// Whether it is asked how well a function is known at its knots, which takes longer than the function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Widths {
+    /// It is.
+    Wanted,
+    /// It is not, and standard deviations are NaN but for functions that may jump.
+    Left,
+}
+
 /// A function that was estimated.
 #[derive(Clone, Debug)]
 pub struct Function {
@@ -65,8 +76,10 @@ pub struct Function {
 
 /// Knots of a group are at most so many: a drive of 25 minutes has as many rows of a second, and they tell no more.
 const MOST_KNOTS: f64 = 1500.0;
-/// Knots to one length of the process.
-const KNOTS_PER_LENGTH: f64 = 2.0;
+/// Knots to one length of the process, enough to find it.
+pub const COARSE: f64 = 2.0;
+/// Enough to draw it: the process is rough within its length.
+pub const FINE: f64 = 8.0;
 
 impl<'a> Profile<'a> {
     /// A function of the position or of time, with what a parameter of one does to each row.
@@ -117,7 +130,7 @@ impl<'a> Profile<'a> {
             .map(|(from, to)| {
                 let range = (to - from).max(1e-9);
                 let wanted =
-                    spread.jumps.as_ref().map_or(spread.length / KNOTS_PER_LENGTH, |jumps| jumps.step);
+                    spread.jumps.as_ref().map_or(spread.length / spread.knots_per_length, |jumps| jumps.step);
                 let step = wanted.max(range / MOST_KNOTS);
                 // Between 2 and some hundreds.
                 #[allow(
@@ -177,15 +190,15 @@ impl<'a> Profile<'a> {
         Some(())
     }
 
-    /// The function itself, once the other columns `used` have the values `beta`.
+    /// The function itself, once the other columns have the values `beta`.
     pub fn function(
         &self,
         whitened: &Whitened,
         chunks: &[Chunk],
         fit: &[bool],
         spread: &Spread,
-        used: &[usize],
         beta: &DVector<f64>,
+        widths: Widths,
     ) -> Function {
         let groups = self.groups(spread);
         let of_group = |(number, group): (usize, &Group)| {
@@ -196,14 +209,19 @@ impl<'a> Profile<'a> {
                 return ((DVector::zeros(group.count), size), vec![1.0; group.count - 1]);
             };
             let mut right = cross.column(cross.ncols() - 1).into_owned();
-            for (index, column) in used.iter().enumerate() {
-                right -= cross.column(*column) * beta[index];
+            for (column, value) in beta.iter().enumerate() {
+                right -= cross.column(column) * *value;
             }
             let values = factor.solve(&right);
+            if widths == Widths::Left && spread.jumps.is_none() {
+                let unknown = DVector::from_element(group.count, f64::NAN);
+                return ((values, unknown), Vec::new());
+            }
             let usual = innovation(group, spread);
-            let squares = squares(&factor, &values, forgetting(group, spread));
+            let (own, beside) = factor.inverse_diagonals();
+            let squares = squares(&own, &beside, &values, forgetting(group, spread));
             let squares = squares.into_iter().map(|square| square / usual).collect();
-            ((values, factor.inverse_diagonals().0.map(f64::sqrt)), squares)
+            ((values, own.map(f64::sqrt)), squares)
         };
         let (values, squares) = groups.par_iter().enumerate().map(of_group).unzip();
         Function { values, groups, spread: spread.clone(), squares }
@@ -232,7 +250,7 @@ impl<'a> Profile<'a> {
         for index in own {
             let chunk = &chunks[index];
             let (first, mut basis) = self.basis(index, chunk, group);
-            whitened.whiteners.of(chunk).whiten_all(&mut basis);
+            whitened.whiteners.whiten(index, chunk, &mut basis);
             let own = basis.transpose() * &basis;
             let with = basis.transpose() * &whitened.chunks[index];
             let local = basis.ncols();
@@ -367,7 +385,7 @@ mod tests {
     #[test]
     fn the_closed_form_of_the_determinant_is_that_of_the_matrix() {
         let group = Group { from: 0.0, step: 3.0, count: 7 };
-        let spread = Spread { length: 10.0, size: 0.3, jumps: None };
+        let spread = Spread { length: 10.0, size: 0.3, knots_per_length: COARSE, jumps: None };
         let direct = precision(0, &group, &spread, 1).cholesky().unwrap().log_determinant();
         assert!((direct - log_precision(0, &group, &spread)).abs() < 1e-9);
     }
@@ -375,7 +393,7 @@ mod tests {
     #[test]
     fn the_precision_is_the_inverse_of_an_exponential_covariance() {
         let group = Group { from: 0.0, step: 3.0, count: 5 };
-        let spread = Spread { length: 10.0, size: 0.3, jumps: None };
+        let spread = Spread { length: 10.0, size: 0.3, knots_per_length: COARSE, jumps: None };
         let factor = precision(0, &group, &spread, 1).cholesky().unwrap();
         let row = factor.solve(&DVector::from_fn(5, |knot, _| f64::from(knot == 3)));
         let expected = 0.09 * (-6.0_f64 / 10.0).exp();

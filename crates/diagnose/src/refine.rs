@@ -264,7 +264,7 @@ fn nonlinear(
                 .iter()
                 .fold(residual[index].clone(), |left, (column, size)| left - &column[index] * *size);
             let white = match &whiteners {
-                Some(whiteners) => whiteners.of(chunk).whiten(&values),
+                Some(whiteners) => whiteners.white(index, chunk, &values),
                 None => values,
             };
             if let Some(cluster) = cluster_of.iter().position(|run| *run == chunk.run) {

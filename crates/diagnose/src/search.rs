@@ -5,9 +5,9 @@ use crate::Case;
 use crate::balance::System;
 use crate::catalogue::{Cause, Class, Form};
 use crate::contest::Contest;
-use crate::gram::{Column, Estimate, Reduced, Whitened};
+use crate::gram::{Column, Estimate, Reduced};
 use crate::noise::{Noises, Shape};
-use crate::profile::{Function, Profile, Spread};
+use crate::profile::Function;
 use crate::sensors::petty;
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Trial};
@@ -82,13 +82,13 @@ pub struct Found {
 }
 
 /// At most so many causes.
-const MOST_CAUSES: usize = 3;
+pub const MOST_CAUSES: usize = 3;
 /// So many sets are grown side by side, and each by so many causes.
 const BEAM: usize = 6;
 /// Each cause more makes a set less likely from the start: odds of one to twenty.
-const PER_CAUSE: f64 = 3.0;
+pub const PER_CAUSE: f64 = 3.0;
 /// A function of time is shown by no other run: it takes so much more.
-const NO_OTHER_RUN: f64 = 20.0;
+pub const NO_OTHER_RUN: f64 = 20.0;
 /// A growth of ln p within this of the best one does not tell the two apart: odds of one to twenty.
 const TOLERANCE: f64 = 3.0;
 /// No growth below this counts, whatever chance can do.
@@ -192,7 +192,7 @@ impl State<'_> {
     }
 
     /// The set without causes that bring less beside the others than chance would.
-    fn without_needless(&self, mut best: Stand, needed: f64) -> Option<Stand> {
+    pub fn without_needless(&self, mut best: Stand, needed: f64) -> Option<Stand> {
         loop {
             let lesser = (0..best.parts.len()).filter_map(|place| {
                 let mut parts = best.parts.clone();
@@ -251,7 +251,7 @@ impl State<'_> {
 
     /// The set without causes that do not help to predict a run from the others, and what those are. A function of time
     /// belongs to its own run, one of position to its path, and no other can show it.
-    fn without_unproven(&self, mut best: Stand) -> Option<(Stand, Vec<usize>)> {
+    pub fn without_unproven(&self, mut best: Stand) -> Option<(Stand, Vec<usize>)> {
         /// Growth of ln p of the runs predicted.
         const LEAST: f64 = 1.0;
         let mut out = Vec::new();
@@ -273,7 +273,7 @@ impl State<'_> {
     }
 
     /// Whether a part is a function of time.
-    fn timed(&self, part: &Part) -> bool {
+    pub fn timed(&self, part: &Part) -> bool {
         part.spread.is_some() && self.cause(&part.trial).form == Form::OverTime
     }
 
@@ -285,7 +285,7 @@ impl State<'_> {
     }
 
     /// What was found, each cause with what it brings beside the others and what could stand in its place.
-    fn found(
+    pub fn found(
         &self,
         best: Stand,
         first: Stand,
@@ -346,25 +346,10 @@ impl State<'_> {
         }
     }
 
-    /// The functions of a set from all runs, with everything else as the fitted ones have it.
-    fn functions_along(&self, stand: &Stand) -> Vec<Option<Function>> {
-        let columns: Vec<&Column> = stand.used.iter().map(|column| &self.pool.columns[*column]).collect();
-        let places: Vec<usize> = (0..columns.len()).collect();
-        let chunks = &self.system.chunks;
-        let whitened = Whitened::new(chunks, &self.system.residual, &columns, &stand.noises);
-        let Some(whitened) = whitened else { return Vec::new() };
-        let all = vec![true; self.fit.len()];
-        let of = |one: &Option<(Profile, Spread)>| {
-            let (profile, spread) = one.as_ref()?;
-            Some(profile.function(&whitened, chunks, &all, spread, &places, &stand.estimate.beta))
-        };
-        self.profiles(&stand.parts).iter().map(of).collect()
-    }
-
     /// The balance in which rows stand out most from its noise.
     fn balance_of(&self, rows: &Column, noises: &Noises) -> usize {
         let squares = self.system.mean_squares(rows, self.fit);
-        let strengths = squares.iter().zip(&noises.0).map(|(square, noise)| square / noise.sd().powi(2));
+        let strengths = squares.iter().zip(&noises.each).map(|(square, noise)| square / noise.sd().powi(2));
         let best = strengths.enumerate().max_by(|one, other| one.1.total_cmp(&other.1));
         best.map_or(0, |(number, _)| number)
     }
@@ -397,7 +382,7 @@ impl State<'_> {
     }
 
     /// The growth of ln p that the best of all trials reaches by chance once in a hundred, if nothing is missing.
-    fn chance(&self, stand: &Stand, reduced: &Reduced) -> f64 {
+    pub fn chance(&self, stand: &Stand, reduced: &Reduced) -> f64 {
         let trials: Vec<&Trial> =
             self.pool.trials.iter().filter(|trial| !self.cause(trial).is_function()).collect();
         let mut jittered = reduced.matrix.clone();
@@ -434,12 +419,16 @@ impl State<'_> {
         let effects: Vec<Column> = stand.parts.iter().map(|part| stand.effect(self, part)).collect();
         let in_noise = |rows: &Column| -> Vec<f64> {
             let squares = self.system.mean_squares(rows, self.fit);
-            squares.iter().zip(&stand.noises.0).map(|(square, noise)| square / noise.sd().powi(2)).collect()
+            squares
+                .iter()
+                .zip(&stand.noises.each)
+                .map(|(square, noise)| square / noise.sd().powi(2))
+                .collect()
         };
         let sizes: Vec<Vec<f64>> = effects.iter().map(in_noise).collect();
         let all: f64 = sizes.iter().flatten().sum();
         let heard = |size: &Vec<f64>| {
-            let loud = size.iter().zip(&stand.noises.0).any(|(square, noise)| match noise.shape {
+            let loud = size.iter().zip(&stand.noises.each).any(|(square, noise)| match noise.shape {
                 // Differences of speed are noisy row by row and not over a run, so their rows are no measure.
                 Shape::Differenced => *square > 0.0,
                 Shape::Averaged => square.sqrt() > LEAST_EFFECT,

@@ -5,7 +5,7 @@ use crate::balance::System;
 use crate::catalogue::Cause;
 use crate::gram::{Column, Estimate, Reduced, Whitened};
 use crate::noise::Noises;
-use crate::profile::{Function, Profile, Spread};
+use crate::profile::{Function, Profile, Spread, Widths};
 use crate::trial::{Pool, Trial};
 use nalgebra::DVector;
 
@@ -168,16 +168,17 @@ impl<'a> State<'a> {
         Some(reduced)
     }
 
+    /// Whether the first column of a trial shows in a balance.
+    pub fn touches(&self, trial: &Trial, balance: usize) -> bool {
+        let signature = &self.pool.columns[trial.columns[0]];
+        let own = self.system.chunks.iter().zip(signature).filter(|(chunk, _)| chunk.balance == balance);
+        own.into_iter().any(|(_, values)| values.iter().any(|value| *value != 0.0))
+    }
+
     /// Whether a function has rows to itself beside those of a set.
     pub fn apart(&self, trial: &Trial, parts: &[Part]) -> bool {
         let touched = |trial: &Trial| -> Vec<bool> {
-            let signature = &self.pool.columns[trial.columns[0]];
-            let of = |number: usize| {
-                let own =
-                    self.system.chunks.iter().zip(signature).filter(|(chunk, _)| chunk.balance == number);
-                own.into_iter().any(|(_, values)| values.iter().any(|value| *value != 0.0))
-            };
-            (0..self.system.kinds.len()).map(of).collect()
+            (0..self.system.kinds.len()).map(|number| self.touches(trial, number)).collect()
         };
         let own = touched(trial);
         let functions = parts.iter().filter(|part| part.spread.is_some());
@@ -221,6 +222,11 @@ impl<'a> State<'a> {
         const LEAST_ROUNDS: usize = 8;
         /// A growth of ln p below this is none.
         const SETTLED: f64 = 0.02;
+        /// Rows that stray are many, and find their weights slowly; what is left to find does not decide.
+        const ROUNDS_ASTRAY: usize = 4;
+        const SETTLED_ASTRAY: f64 = 1.0;
+        let (rounds, settled) =
+            if start.tails.is_some() { (ROUNDS_ASTRAY, SETTLED_ASTRAY) } else { (ROUNDS, SETTLED) };
         let used = self.columns(parts);
         let columns: Vec<&Column> = used.iter().map(|column| &self.pool.columns[*column]).collect();
         let all_sd = self.sd();
@@ -235,7 +241,7 @@ impl<'a> State<'a> {
         let jumps =
             parts.iter().any(|part| part.spread.as_ref().is_some_and(|spread| spread.jumps.is_some()));
         let least = if jumps { LEAST_ROUNDS } else { 0 };
-        for round in 0..ROUNDS + least {
+        for round in 0..rounds + least {
             let whitened = Whitened::new(chunks, &self.system.residual, &columns, &noises)?;
             let reduced = self.without_functions(&whitened, &profiles, self.fit)?;
             let estimate = reduced.estimate(&places, &sd)?;
@@ -244,16 +250,21 @@ impl<'a> State<'a> {
                 .iter()
                 .map(|one| {
                     let (profile, spread) = one.as_ref()?;
-                    let made = profile.function(&whitened, chunks, self.fit, spread, &places, &estimate.beta);
+                    let beta = &estimate.beta;
+                    let made = profile.function(&whitened, chunks, self.fit, spread, beta, Widths::Left);
                     for (left, rows) in left.iter_mut().zip(profile.rows(self.system, &made)) {
                         *left -= rows;
                     }
                     Some(made)
                 })
                 .collect();
-            let next = if round >= least { self.system.noises(&left, self.fit) } else { noises.clone() };
+            let next = if round >= least {
+                self.system.noises_like(&left, self.fit, Some(&noises))
+            } else {
+                noises.clone()
+            };
             let score = estimate.log_evidence + self.heavy(&used, &estimate.beta) - self.choices(&parts);
-            let better = best.as_ref().is_none_or(|one| score > one.score + SETTLED);
+            let better = best.as_ref().is_none_or(|one| score > one.score + settled);
             if !better && round >= least {
                 break;
             }
@@ -278,7 +289,24 @@ impl<'a> State<'a> {
                 noises = next;
             }
         }
-        best
+        best.map(|stand| Stand { functions: self.drawn(&stand, &stand.noises, self.fit), ..stand })
+    }
+
+    /// The functions of a set at a noise, as some runs tell them, each with how well it is known.
+    pub fn drawn(&self, stand: &Stand, noises: &Noises, runs: &[bool]) -> Vec<Option<Function>> {
+        let profiles = self.profiles(&stand.parts);
+        if profiles.iter().all(Option::is_none) {
+            return vec![None; profiles.len()];
+        }
+        let columns: Vec<&Column> = stand.used.iter().map(|column| &self.pool.columns[*column]).collect();
+        let chunks = &self.system.chunks;
+        let whitened = Whitened::new(chunks, &self.system.residual, &columns, noises);
+        let Some(whitened) = whitened else { return vec![None; profiles.len()] };
+        let of = |one: &Option<(Profile, Spread)>| {
+            let ((profile, spread), beta) = (one.as_ref()?, &stand.estimate.beta);
+            Some(profile.function(&whitened, chunks, runs, spread, beta, Widths::Wanted))
+        };
+        profiles.iter().map(of).collect()
     }
 
     /// What columns of these values leave of every row.

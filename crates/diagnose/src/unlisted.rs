@@ -201,7 +201,7 @@ impl Whitening<'_> {
         let chunks = self.system.chunks.iter().enumerate();
         let own = chunks.filter(|(_, chunk)| chunk.run == run && self.system.kind(chunk) == self.kind);
         own.flat_map(|(index, chunk)| {
-            self.whiteners.of(chunk).whiten(&values(index)).iter().copied().collect::<Vec<_>>()
+            self.whiteners.white(index, chunk, &values(index)).iter().copied().collect::<Vec<_>>()
         })
         .collect()
     }
@@ -254,7 +254,7 @@ fn law(
                 .collect(),
         })
         .collect();
-    let variables = variables(case);
+    let variables = variables(case, kind);
     let problem = Problem {
         variables: &variables,
         target,
@@ -273,7 +273,7 @@ fn law(
 }
 
 /// What may stand in a law: of the situation, never made of what is to be explained.
-fn variables(case: &Case) -> Vec<Variable> {
+fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     /// Name, unit, samples of every run where they are known.
     type Offered = (&'static str, &'static str, Option<Vec<Vec<f64>>>);
     let channel = |name: &str| -> Option<Vec<Vec<f64>>> {
@@ -282,7 +282,7 @@ fn variables(case: &Case) -> Vec<Variable> {
     let of = |values: &dyn Fn(&crate::recorded::Recorded) -> Vec<f64>| {
         Some(case.runs.iter().map(values).collect())
     };
-    let block_s = crate::balance::block_s(&case.runs);
+    let block_s = crate::balance::block_s(kind, &case.runs);
     let speeds: Vec<f64> = case.runs.iter().flat_map(|run| run.motion.value.iter().copied()).collect();
     let finest = |name: &str| match name {
         "t" => BLOCKS * block_s,

@@ -6,7 +6,7 @@ use super::stage::Stage;
 use crate::catalogue::Form;
 use crate::gram::{Column, Reduced, Whitened};
 use crate::noise::{Noise, Noises};
-use crate::profile::{Function, Profile, Spread};
+use crate::profile::{COARSE, Function, Profile, Spread, Widths};
 use crate::refine::Cured;
 use crate::search::Found;
 use crate::state::WIDER;
@@ -230,11 +230,12 @@ impl<'a, 'b> Columns<'a, 'b> {
         let lengths = like.map_or(LENGTHS_M.to_vec(), |spread| vec![spread.length]);
         let mut best: Option<(f64, Function)> = None;
         for length in lengths {
-            let spread = Spread { length, size: cause.terms[0].scale, jumps: None };
+            let spread = Spread { length, size: cause.terms[0].scale, knots_per_length: COARSE, jumps: None };
             let Some(reduced) = profile.eliminate(&whitened, chunks, fit, &spread) else { continue };
             let Some(estimate) = reduced.estimate(&all, &sd) else { continue };
             if best.as_ref().is_none_or(|(known, _)| estimate.log_evidence > *known) {
-                let function = profile.function(&whitened, chunks, fit, &spread, &all, &estimate.beta);
+                let function =
+                    profile.function(&whitened, chunks, fit, &spread, &estimate.beta, Widths::Wanted);
                 best = Some((estimate.log_evidence, function));
             }
         }
@@ -252,7 +253,7 @@ impl<'a, 'b> Columns<'a, 'b> {
                 persistence,
                 ..*noise
             };
-            Noises(self.noises.0.iter().map(one).collect())
+            Noises::normal(self.noises.each.iter().map(one).collect())
         };
         let all = LOUDER.iter().flat_map(|share| PERSISTENCES.map(|persistence| louder(*share, persistence)));
         std::iter::once(self.noises.clone()).chain(all).collect()
@@ -281,7 +282,7 @@ impl<'a, 'b> Columns<'a, 'b> {
             let rows = chunk.rows.len();
             let trace = traces
                 .entry((chunk.balance, rows))
-                .or_insert_with(|| whitened.whiteners.of(chunk).trace(rows, &as_found.0[chunk.balance]));
+                .or_insert_with(|| whitened.whiteners.of(chunk).trace(rows, &as_found.each[chunk.balance]));
             all[chunk.run].scalar += *trace;
         }
         for (course, products) in self.stage.courses.iter().zip(&mut all) {
@@ -299,9 +300,9 @@ impl<'a, 'b> Columns<'a, 'b> {
     fn there_is(&self, noises: &Noises) -> Noises {
         let one = |kind: &crate::Kind| {
             let known = self.system.kinds.iter().position(|own| own == kind);
-            known.map_or_else(|| self.stage.accelerometer(), |known| noises.0[known])
+            known.map_or_else(|| self.stage.accelerometer(), |known| noises.each[known])
         };
-        Noises(self.stage.system.kinds.iter().map(one).collect())
+        Noises::normal(self.stage.system.kinds.iter().map(one).collect())
     }
 }
 

@@ -91,7 +91,7 @@ struct Left<'a> {
 /// The map of a residual. Runs that are held out appear along their own time and nowhere else.
 pub fn map(case: &Case, system: &System, noises: &Noises, residual: &Column, events: &[Event]) -> Map {
     let mut map = Map::default();
-    for (number, (kind, noise)) in system.kinds.iter().zip(&noises.0).enumerate() {
+    for (number, (kind, noise)) in system.kinds.iter().zip(&noises.each).enumerate() {
         let own = system.chunks.iter().zip(residual).filter(|(chunk, _)| chunk.balance == number);
         let left = Left { kind: *kind, noise, chunks: own.collect() };
         let seen: Vec<Vec<(Mismatch, f64)>> =

@@ -169,7 +169,7 @@ fn fit(case: &Case, found: Option<&Found>, proof: &Proof) -> Fit {
         // Without a noise of its own the signal is judged by the rows: all of their scatter over the sensors' part.
         _ => found
             .iter()
-            .flat_map(|found| &found.noises.1.0)
+            .flat_map(|found| &found.noises.1.each)
             .map(|noise| (1.0 + noise.lack()).sqrt())
             .fold(0.0, f64::max),
     };

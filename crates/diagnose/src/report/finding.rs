@@ -152,7 +152,7 @@ fn share(
     let Some(cured) = refined.causes.get(place) else { return 0.0 };
     let balance = cured.accepted.balance;
     let size = |column: &crate::gram::Column| system.mean_squares(column, &case.fit)[balance];
-    let noise = found.noises.1.0[balance].sensor;
+    let noise = found.noises.1.each[balance].sensor;
     let before = (size(&system.residual) - noise).max(f64::MIN_POSITIVE);
     let left = (size(&found.left) - noise).max(0.0);
     let of = |place: usize| found.effects.get(place).map_or(0.0, size);

@@ -1,0 +1,125 @@
+//! What is found once rows may stray: a function follows rows one by one, and what is strange about some of them would pass
+//! for a part of it; and what they bend hides other causes.
+//!
+//! This comes last, where the causes that every row asks for are known: a spell of something that is really there is strange
+//! as well, and would be passed over.
+
+use crate::contest::Contest;
+use crate::noise::Noises;
+use crate::profile::{FINE, Function};
+use crate::search::{Found, LEAST_GAIN, MOST_CAUSES, NO_OTHER_RUN, PER_CAUSE};
+use crate::state::{Part, Stand, State};
+use crate::tails::Tails;
+use crate::trial::Pool;
+use crate::{Case, System};
+
+/// What was found, looked at again where rows stray.
+pub fn straying(case: &Case, system: &System, pool: &Pool, found: Found) -> Found {
+    let state = State { case, system, pool, fit: &case.fit };
+    let again = || -> Option<Found> {
+        let stand = state.further(state.straying(&found.stand)?)?;
+        let (stand, more) = state.without_unproven(state.without_needless(stand, found.needed)?)?;
+        let unproven = found.unproven.iter().copied().chain(more).collect();
+        Some(state.found(stand, found.first.clone(), (found.tried.clone(), unproven), found.needed))
+    };
+    again().unwrap_or(found)
+}
+
+impl State<'_> {
+    /// What shows besides once rows may stray: causes that the strange rows hid.
+    fn further(&self, mut best: Stand) -> Option<Stand> {
+        for _ in 0..MOST_CAUSES {
+            let reduced = self.reduced(&best.noises, &best.parts)?;
+            let needed = PER_CAUSE + LEAST_GAIN.max(self.chance(&best, &reduced));
+            let able = |one: &Contest| {
+                let timed = one.stand.parts.last().is_some_and(|part| self.timed(part));
+                one.stand.score - best.score >= needed + if timed { NO_OTHER_RUN } else { 0.0 }
+                    && self.sensible(&one.stand)
+            };
+            let Some(next) = self.contest(&best, &reduced, &[]).into_iter().find(able) else { break };
+            best = next.stand;
+        }
+        Some(best)
+    }
+
+    /// A set with functions, whose rows may stray; none where they do not.
+    fn straying(&self, best: &Stand) -> Option<Stand> {
+        /// Each function as it suits best beside what strays, round after round.
+        const ROUNDS: usize = 3;
+        if best.parts.iter().all(|part| part.spread.is_none()) {
+            return None;
+        }
+        let strays = |stand: &Stand| {
+            let noises = Noises { tails: None, ..stand.noises.clone() };
+            let tails = Tails::of(&self.system.chunks, &noises, &stand.left);
+            Noises { tails, ..noises }
+        };
+        let mut current = self.settle(&best.parts, &strays(best))?;
+        if current.score < best.score + LEAST_GAIN {
+            return None;
+        }
+        // What lasts is no noise where a function can follow it.
+        current.noises.brief = (0..self.system.kinds.len())
+            .map(|balance| {
+                let functions = current.parts.iter().filter(|part| part.spread.is_some());
+                functions.into_iter().any(|part| self.touches(&part.trial, balance))
+            })
+            .collect();
+        // What a function leaves out passes for noise, and would let no function follow: it is asked from both sides.
+        let loud = |stand: &Stand| self.system.noises_like(&stand.left, self.fit, Some(&strays(stand)));
+        let quiet = |stand: &Stand| self.quiet(&Stand { noises: strays(stand), ..stand.clone() });
+        let starts: [&dyn Fn(&Stand) -> Noises; 2] = [&loud, &quiet];
+        let of = |start: &&dyn Fn(&Stand) -> Noises| {
+            let mut noises = start(&current);
+            let mut last: Option<Stand> = None;
+            for _ in 0..ROUNDS {
+                let settled = self.respread(last.as_ref().unwrap_or(&current), &noises)?;
+                noises = strays(&settled);
+                last = Some(settled);
+            }
+            last
+        };
+        let all: Vec<Stand> = starts.iter().filter_map(of).collect();
+        all.into_iter().max_by(|one, other| one.score.total_cmp(&other.score)).or(Some(current))
+    }
+
+    /// A set whose functions are spread anew, as suits them best at a noise.
+    fn respread(&self, stand: &Stand, noises: &Noises) -> Option<Stand> {
+        let mut parts = stand.parts.clone();
+        for place in 0..parts.len() {
+            let mut others = parts.clone();
+            let part = Part { spread: None, ..others.remove(place) };
+            if parts[place].spread.as_ref().is_some_and(|spread| spread.jumps.is_none()) {
+                let beside = Stand { parts: others, ..stand.clone() };
+                let spread = self.best_spread(&part, &beside, noises, FINE);
+                parts[place].spread = spread.or(parts[place].spread.clone());
+            }
+        }
+        self.settle(&parts, noises)
+    }
+
+    /// The functions of a set from all runs, with everything else as the fitted ones have it.
+    pub fn functions_along(&self, stand: &Stand) -> Vec<Option<Function>> {
+        /// Rows of runs that were not fitted stray beside what their own functions leave: found round after round.
+        const ROUNDS: usize = 4;
+        let (chunks, profiles) = (&self.system.chunks, self.profiles(&stand.parts));
+        let all = vec![true; self.fit.len()];
+        let mut noises = Noises::normal(stand.noises.each.clone());
+        let mut functions = self.drawn(stand, &noises, &all);
+        if stand.noises.tails.is_some() {
+            let bare = self.left(&stand.used, &stand.estimate.beta);
+            for _ in 0..ROUNDS {
+                let mut left = bare.clone();
+                for (one, made) in profiles.iter().zip(&functions) {
+                    let (Some((profile, _)), Some(made)) = (one, made) else { continue };
+                    for (left, rows) in left.iter_mut().zip(profile.rows(self.system, made)) {
+                        *left -= rows;
+                    }
+                }
+                noises.tails = Tails::of(chunks, &noises, &left);
+                functions = self.drawn(stand, &noises, &all);
+            }
+        }
+        functions
+    }
+}

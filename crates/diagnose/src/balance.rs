@@ -20,8 +20,14 @@ pub enum Kind {
     Slip,
     /// Forces against the change of momentum.
     Motion,
+    /// The engine's power against what wheels, losses and auxiliaries take.
+    Shaft,
     /// Battery power against what drives and auxiliaries take.
     Battery,
+    /// What the state of charge loses against what drives and auxiliaries take: the battery balance where neither current
+    /// nor voltage is known.
+    #[serde(rename = "battery")]
+    Charge,
     /// Battery voltage against its current: the battery balance's other half.
     #[serde(rename = "battery")]
     Voltage,
@@ -31,8 +37,32 @@ pub enum Kind {
 
 impl Kind {
     /// From the ground up: a mismatch lives in the first that does not close.
-    pub const ORDER: [Self; 6] =
-        [Self::Parity, Self::Slip, Self::Motion, Self::Battery, Self::Voltage, Self::Fuel];
+    pub const ORDER: [Self; 8] = [
+        Self::Parity,
+        Self::Slip,
+        Self::Motion,
+        Self::Shaft,
+        Self::Battery,
+        Self::Charge,
+        Self::Voltage,
+        Self::Fuel,
+    ];
+
+    /// Whether a power is balanced, and every cause that takes some shows in it.
+    pub fn is_power(self) -> bool {
+        matches!(self, Self::Shaft | Self::Battery | Self::Charge | Self::Fuel)
+    }
+
+    /// Whether it is among the balances that a cause is listed for: what shows in the fuel shows at the shaft as far as it
+    /// takes power there, and what shows in the battery's power in its charge.
+    pub fn among(self, listed: &[Self]) -> bool {
+        let like = match self {
+            Self::Shaft => Self::Fuel,
+            Self::Charge => Self::Battery,
+            own => own,
+        };
+        listed.contains(&self) || listed.contains(&like)
+    }
 
     /// As it is written.
     pub fn name(self) -> &'static str {
@@ -40,7 +70,8 @@ impl Kind {
             Self::Parity => "parity",
             Self::Slip => "slip",
             Self::Motion => "motion",
-            Self::Battery | Self::Voltage => "battery",
+            Self::Shaft => "shaft",
+            Self::Battery | Self::Charge | Self::Voltage => "battery",
             Self::Fuel => "fuel",
         }
     }
@@ -51,7 +82,7 @@ impl Kind {
             Self::Parity => "m/s²",
             Self::Slip => "m/s",
             Self::Motion => "N",
-            Self::Battery | Self::Fuel => "W",
+            Self::Shaft | Self::Battery | Self::Charge | Self::Fuel => "W",
             Self::Voltage => "V",
         }
     }
@@ -62,7 +93,8 @@ impl Kind {
             Self::Parity => "specific_force_m_s2",
             Self::Slip => "wheel_speed_m_s",
             Self::Motion => "speed_m_s",
-            Self::Battery => "battery_power_w",
+            Self::Shaft => "engine_power_w",
+            Self::Battery | Self::Charge => "battery_power_w",
             Self::Voltage => "battery_voltage_v",
             Self::Fuel => "fuel_rate_kg_s",
         }
@@ -70,7 +102,11 @@ impl Kind {
 
     /// How the noise of its sensor comes through.
     fn shape(self) -> Shape {
-        if matches!(self, Self::Motion | Self::Parity) { Shape::Differenced } else { Shape::Averaged }
+        if matches!(self, Self::Motion | Self::Parity | Self::Charge) {
+            Shape::Differenced
+        } else {
+            Shape::Averaged
+        }
     }
 }
 
@@ -130,6 +166,11 @@ impl System {
     /// The balance of a chunk.
     pub fn kind(&self, chunk: &Chunk) -> Kind {
         self.kinds[chunk.balance]
+    }
+
+    /// Length of a block of a balance [s]; nothing where there is none.
+    pub fn block_s(&self, kind: Kind) -> f64 {
+        self.kinds.iter().position(|own| *own == kind).map_or(0.0, |number| self.blocks_s[number])
     }
 
     /// Whether there is this balance.
@@ -221,7 +262,9 @@ pub fn kinds(runs: &[Recorded], said: &[Said]) -> Vec<Kind> {
             Kind::Parity => any(&|run, _| has(run, "specific_force_m_s2")),
             Kind::Slip => any(&|run, _| has(run, "wheel_speed_m_s")),
             Kind::Motion => any(&|run, _| run.force_n.is_some()),
+            Kind::Shaft => any(&|run, said| run.engine_w.is_some() && said.engine_w.is_some()),
             Kind::Battery => any(&|run, said| has(run, "battery_power_w") && said.battery_w.is_some()),
+            Kind::Charge => any(&|run, said| run.charge_j.is_some() && said.charge.is_some()),
             Kind::Voltage => any(&|run, said| {
                 let known = |name| has(run, name);
                 known("battery_voltage_v") && known("battery_current_a") && said.resistance_ohm.is_some()
@@ -229,6 +272,14 @@ pub fn kinds(runs: &[Recorded], said: &[Said]) -> Vec<Kind> {
             Kind::Fuel => any(&|run, said| has(run, "fuel_rate_kg_s") && said.fuel_kg_s.is_some()),
         })
         .collect()
+}
+
+/// Which runs any of these balances can use.
+pub fn bearing(kinds: &[Kind], runs: &[Recorded], said: &[Said]) -> Vec<bool> {
+    let of_run = |(run, said): (&Recorded, &Said)| {
+        kinds.iter().any(|kind| usable(*kind, run, said).into_iter().any(|usable| usable))
+    };
+    runs.iter().zip(said).map(of_run).collect()
 }
 
 /// Length of a block of a balance: short enough to see what happens, long enough to hold two samples.
@@ -240,7 +291,7 @@ pub fn block_s(kind: Kind, runs: &[Recorded]) -> f64 {
     let whole: f64 = durations.iter().sum();
     let most = match kind {
         Kind::Parity | Kind::Slip | Kind::Motion => MOST_ROWS_OF_MOTION,
-        Kind::Battery | Kind::Voltage | Kind::Fuel => MOST_ROWS,
+        _ => MOST_ROWS,
     };
     (median / ROWS_PER_RUN).max(0.04).min(1.0_f64.max(2.0 * period)).max(2.0 * period).max(whole / most)
 }
@@ -255,6 +306,9 @@ fn usable(kind: Kind, run: &Recorded, said: &Said) -> Vec<bool> {
     let channel = |name: &str| trace.get(name);
     let speed = channel("speed_m_s").unwrap_or(&[]);
     let braked = channel("brake");
+    let stands_in = |i: usize| run.stands_in.get(i).copied().unwrap_or(false);
+    // From one speed to the other is no change of motion.
+    let joins = |i: usize| stands_in(i) != stands_in(i.saturating_sub(1));
     (0..trace.len())
         .map(|i| {
             let moving = run.motion.value[i].abs() > SLOWEST_M_S && speed[i].is_finite();
@@ -266,10 +320,25 @@ fn usable(kind: Kind, run: &Recorded, said: &Said) -> Vec<bool> {
                         && said.resistance_n[i].is_finite()
                         && run.measured.compared[i]
                         && braked.is_none_or(|brake| brake[i] < 0.5)
+                        && !joins(i)
                 }
-                Kind::Parity => moving && finite(channel("specific_force_m_s2")),
+                Kind::Parity => moving && finite(channel("specific_force_m_s2")) && !joins(i),
+                Kind::Shaft => {
+                    finite(run.engine_w.as_deref())
+                        && finite(said.engine_w.as_deref())
+                        && run.measured.compared[i]
+                }
+                Kind::Charge => {
+                    run.charge_j.is_some()
+                        && finite(channel("state_of_charge"))
+                        && finite(said.charge.as_deref())
+                        && run.measured.compared[i]
+                }
                 Kind::Slip => {
-                    moving && finite(channel("wheel_speed_m_s")) && finite(Some(&said.wheel_speed_m_s))
+                    moving
+                        && !stands_in(i)
+                        && finite(channel("wheel_speed_m_s"))
+                        && finite(Some(&said.wheel_speed_m_s))
                 }
                 Kind::Battery => finite(channel("battery_power_w")) && finite(said.battery_w.as_deref()),
                 Kind::Voltage => {
@@ -307,6 +376,14 @@ fn residual(kind: Kind, run: &Recorded, said: &Said, chunk: &Chunk) -> DVector<f
         Kind::Battery => {
             row.mean(channel("battery_power_w")) - row.mean(said.battery_w.as_deref().unwrap_or(&zero))
         }
+        Kind::Shaft => {
+            row.mean(run.engine_w.as_deref().unwrap_or(&zero))
+                - row.mean(said.engine_w.as_deref().unwrap_or(&zero))
+        }
+        Kind::Charge => {
+            let falls = |charge: &[f64]| -run.charge_j.unwrap_or(0.0) * row.slope(time_s, charge);
+            falls(channel("state_of_charge")) - falls(said.charge.as_deref().unwrap_or(&zero))
+        }
         Kind::Fuel => {
             FUEL_J_KG
                 * (row.mean(channel("fuel_rate_kg_s")) - row.mean(said.fuel_kg_s.as_deref().unwrap_or(&zero)))
@@ -319,6 +396,10 @@ fn residual(kind: Kind, run: &Recorded, said: &Said, chunk: &Chunk) -> DVector<f
 pub fn change(kind: Kind, run: &Recorded, before: &Said, after: &Said) -> Vec<f64> {
     let minus = |one: &[f64], other: &[f64]| one.iter().zip(other).map(|(one, other)| one - other).collect();
     let count = before.resistance_n.len();
+    let less = |before: &Option<Vec<f64>>, after: &Option<Vec<f64>>| match (before, after) {
+        (Some(before), Some(after)) => minus(before, after),
+        _ => vec![0.0; count],
+    };
     match kind {
         Kind::Motion => (0..count)
             .map(|i| {
@@ -328,10 +409,9 @@ pub fn change(kind: Kind, run: &Recorded, before: &Said, after: &Said) -> Vec<f6
             .collect(),
         Kind::Parity => minus(&before.slope_m_s2, &after.slope_m_s2),
         Kind::Slip => minus(&before.wheel_speed_m_s, &after.wheel_speed_m_s),
-        Kind::Battery => match (&before.battery_w, &after.battery_w) {
-            (Some(before), Some(after)) => minus(before, after),
-            _ => vec![0.0; count],
-        },
+        Kind::Battery => less(&before.battery_w, &after.battery_w),
+        Kind::Shaft => less(&before.engine_w, &after.engine_w),
+        Kind::Charge => less(&before.drawn_w(run), &after.drawn_w(run)),
         Kind::Voltage => match (before.resistance_ohm, after.resistance_ohm) {
             (Some(before), Some(after)) => change_v(run, after - before),
             _ => vec![0.0; count],

@@ -1,13 +1,14 @@
 //! What is diagnosed: a scenario, a recording, and everything that is prepared once.
 
 use crate::DiagnoseError;
-use crate::balance::{Kind, System, block_s, kinds};
+use crate::balance::{Kind, System, bearing, block_s, kinds};
 use crate::catalogue::{Around, Cause, causes};
 use crate::own::own;
 use crate::recorded::{Recorded, recorded};
 use crate::said::{Said, said};
 use crate::search::Accepted;
 use crate::sensors::corrected;
+use crate::standin::prepared;
 use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
 use headland_calibrate::study::Study;
 use headland_plugin::{Registry, closest};
@@ -60,6 +61,8 @@ pub(crate) struct Case<'a> {
     pub nominal: Vec<Said>,
     /// Whether each run may be fitted.
     pub fit: Vec<bool>,
+    /// Whether any balance can use a run. Effects are reconstructed along the others, and nothing is learned from them.
+    pub bears: Vec<bool>,
     /// Whether the runs that are held out were chosen here.
     pub chosen: bool,
     pub causes: Vec<Cause>,
@@ -77,14 +80,16 @@ impl<'a> Case<'a> {
         progress: &'a dyn Progress,
     ) -> Result<Self, DiagnoseError> {
         progress.step("reading");
-        let study = Study::new(scenario, recording, registry)?;
+        let prepared = prepared(recording)?;
+        let recording = &prepared.recording;
+        let mut study = Study::of_any(scenario, recording, registry)?;
         let model = scenario.model(registry)?;
-        let runs = recorded(&study, recording, &model);
+        let runs = recorded(&study, &prepared, &model);
+        study.notes.extend(prepared.notes.iter().cloned());
         let marked: Vec<bool> = recording.runs.iter().map(|run| run.held_out).collect();
         if marked.iter().all(|held| *held) {
             return Err(headland_calibrate::study::StudyError::AllHeldOut.into());
         }
-        let (fit, chosen) = split(&marked);
         let mut paths = vec![None; runs.len()];
         for (run, described) in runs.iter().zip(&recording.runs) {
             paths[run.path].clone_from(&described.path);
@@ -98,8 +103,9 @@ impl<'a> Case<'a> {
             petty: Vec::new(),
             paths,
             nominal: Vec::new(),
-            fit,
-            chosen,
+            fit: Vec::new(),
+            bears: Vec::new(),
+            chosen: false,
             causes: Vec::new(),
             kinds: Kind::ORDER.to_vec(),
             progress,
@@ -107,6 +113,11 @@ impl<'a> Case<'a> {
         };
         case.suppose()?;
         case.kinds = kinds(&case.runs, &case.nominal);
+        case.bears = bearing(&case.kinds, &case.runs, &case.nominal);
+        (case.fit, case.chosen) = split(&marked, &case.bears);
+        if !case.kinds.is_empty() {
+            case.study.notes.extend(idle(&case));
+        }
         let mut all = causes(&case.around(&model));
         bound(&mut all, registry);
         all.extend(own(&case)?);
@@ -207,8 +218,11 @@ impl<'a> Case<'a> {
         };
         let speeds = sorted(&self.runs.iter().flat_map(moving).collect::<Vec<f64>>());
         let quantile = |share: f64| if speeds.is_empty() { 1.0 } else { quantile_of_sorted(&speeds, share) };
-        let names = self.runs.first().map(|run| run.measured.trace.channels()).unwrap_or_default();
-        let everywhere = |name: &str| self.runs.iter().all(|run| run.measured.trace.get(name).is_some());
+        let none = !self.bears.contains(&true);
+        let bearing =
+            || self.runs.iter().zip(&self.bears).filter(|(_, bears)| none || **bears).map(|(run, _)| run);
+        let names = bearing().next().map(|run| run.measured.trace.channels()).unwrap_or_default();
+        let everywhere = |name: &str| bearing().all(|run| run.measured.trace.get(name).is_some());
         let mut passes = vec![0; self.runs.len()];
         for run in &self.runs {
             passes[run.path] += 1;
@@ -242,6 +256,8 @@ impl<'a> Case<'a> {
             drives: self.driven() || self.runs.iter().all(|run| run.force_n.is_none()),
             passes: passes.into_iter().max().unwrap_or(1),
             temperatures_k: (warmest - coldest).max(0.0),
+            beginnings: beginnings(&self.fit, &self.bears),
+            pulls: bearing().any(|run| run.force_n.is_some() || run.pull_n.is_some()),
         }
     }
 
@@ -279,19 +295,47 @@ fn bound(causes: &mut [Cause], registry: &Registry) {
     }
 }
 
-/// Which runs are fitted: all that are not marked, or two of three where none is marked.
-fn split(marked: &[bool]) -> (Vec<bool>, bool) {
+/// Which runs are fitted: all that are not marked, or two of three of those that bear on anything where none of these is.
+fn split(marked: &[bool], bears: &[bool]) -> (Vec<bool>, bool) {
     /// Fewer runs are all needed.
     const FEWEST: usize = 3;
-    if marked.iter().any(|held| *held) {
-        return (marked.iter().map(|held| !held).collect(), false);
+    // Where no run bears on anything, there is another error.
+    let none = !bears.contains(&true);
+    let bears = |run: usize| none || bears[run];
+    if (0..marked.len()).any(|run| marked[run] && bears(run)) {
+        return ((0..marked.len()).map(|run| !marked[run] && bears(run)).collect(), false);
     }
-    if marked.len() < FEWEST {
-        return (vec![true; marked.len()], true);
-    }
+    let bearing: Vec<usize> = (0..marked.len()).filter(|run| bears(*run)).collect();
     // Of ten runs the third, the seventh and the tenth: both directions, early and late.
     let held = |index: usize| index % 10 == 2 || index % 10 == 6 || index % 10 == 9;
-    ((0..marked.len()).map(|index| !held(index)).collect(), true)
+    let mut fit = vec![false; marked.len()];
+    for (index, run) in bearing.iter().enumerate() {
+        fit[*run] = bearing.len() < FEWEST || !held(index);
+    }
+    (fit, true)
+}
+
+/// The fitted runs that may have begun otherwise than the others: a few in which it would show, so that not too many are tried.
+fn beginnings(fit: &[bool], bears: &[bool]) -> Vec<usize> {
+    /// More runs than this are not tried one by one.
+    const MOST: usize = 4;
+    let fitted: Vec<usize> = (0..fit.len()).filter(|run| fit[*run] && bears[*run]).collect();
+    if fitted.len() < 2 { Vec::new() } else { fitted.into_iter().take(MOST).collect() }
+}
+
+/// The runs that are not fitted and not held out, and why.
+fn idle(case: &Case) -> Option<String> {
+    let runs = case.runs.iter().zip(&case.bears).filter(|(_, bears)| !**bears);
+    let names: Vec<&str> = runs.map(|(run, _)| run.measured.id.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "In {} nothing was recorded that a balance could use: what was found elsewhere is reconstructed along {}, and \
+             nothing is learned from {}.",
+            names.join(", "),
+            if names.len() == 1 { "it" } else { "them" },
+            if names.len() == 1 { "it" } else { "them" },
+        )
+    })
 }
 
 fn check_names(all: &[Cause], registry: &Registry, options: &Options) -> Result<(), DiagnoseError> {

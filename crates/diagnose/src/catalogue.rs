@@ -59,6 +59,10 @@ pub struct Around {
     pub passes: usize,
     /// Range of the air temperature [K]; 0 where it is not known.
     pub temperatures_k: f64,
+    /// Whether the force at the wheels is known anywhere, beyond what motion takes.
+    pub pulls: bool,
+    /// Runs that may have begun otherwise than the others, by number.
+    pub beginnings: Vec<usize>,
 }
 
 /// How the cause enters.
@@ -103,6 +107,8 @@ pub struct Cause {
     pub law: Option<LawText>,
     /// How it is written, where it is the user's.
     pub own: Option<Own>,
+    /// The one run in which it works; none where it works in all of them.
+    pub run: Option<usize>,
 }
 
 /// An equation that was found, as scenarios write it.
@@ -219,6 +225,7 @@ fn cause(
         experiment,
         law: None,
         own: None,
+        run: None,
     }
 }
 
@@ -254,6 +261,17 @@ impl Cause {
     fn shaped(mut self, shapes: Vec<Vec<f64>>) -> Self {
         self.shapes = shapes;
         self
+    }
+
+    fn in_run(mut self, run: usize) -> Self {
+        self.run = Some(run);
+        self
+    }
+
+    /// The effect as it is in a run in which the cause does not work.
+    pub fn idle(&self) -> String {
+        let values: Vec<f64> = self.terms.iter().map(|term| f64::from(u8::from(!term.linear))).collect();
+        self.written(&values)
     }
 
     fn over(mut self, form: Form) -> Self {
@@ -693,12 +711,12 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             .shaped(vec![vec![15.0], vec![20.0]]),
         );
     }
-    powers(&mut all);
+    powers(&mut all, around);
     sensors(&mut all, around);
     all
 }
 
-fn powers(all: &mut Vec<Cause>) {
+fn powers(all: &mut Vec<Cause>, around: &Around) {
     all.push(cause(
         "auxiliary_power",
         &[Kind::Battery, Kind::Fuel],
@@ -738,18 +756,28 @@ fn powers(all: &mut Vec<Cause>) {
         "more friction of the engine",
         "motor the engine, or idle at two speeds",
     ));
-    all.push(
-        cause(
+    // An engine that was driven just before starts warm, so that often one run alone starts cold.
+    let once = around.beginnings.iter().map(|run| Some(*run));
+    for run in std::iter::once(None).chain(once) {
+        let cold = cause(
             "cold_start",
             &[Kind::Fuel],
             vec![positive("cold_torque_n_m", "N m", 30.0), shape("time_constant_s", "s")],
             "P = T e^(−t/τ) ω / e",
             &["time_s", "engine_speed_rad_s"],
-            "an engine that starts cold",
+            if run.is_some() {
+                "an engine that starts cold in one of the runs"
+            } else {
+                "an engine that starts cold"
+            },
             "repeat the cycle with the engine warm",
         )
-        .shaped([60.0, 150.0, 400.0, 900.0].iter().map(|tau| vec![*tau]).collect()),
-    );
+        .shaped([60.0, 150.0, 400.0, 900.0].iter().map(|tau| vec![*tau]).collect());
+        all.push(match run {
+            Some(run) => cold.in_run(run),
+            None => cold,
+        });
+    }
 }
 
 fn sensors(all: &mut Vec<Cause>, around: &Around) {
@@ -805,7 +833,8 @@ fn sensors(all: &mut Vec<Cause>, around: &Around) {
     all.push(cause(
         "wheel_slip",
         &[Kind::Slip],
-        vec![positive("coefficient", "1", 0.15)],
+        // Where an implement may pull and nobody knows how much, the motion tells of a part of the force only.
+        vec![positive("coefficient", "1", if around.pulls { 0.15 } else { 0.4 })],
         "s = k F / N",
         &["tractive_force_n"],
         "slip of the driven wheels",

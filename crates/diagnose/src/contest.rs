@@ -194,6 +194,8 @@ impl State<'_> {
         knots_per_length: f64,
     ) -> Option<Spread> {
         const SIZES: [f64; 4] = [0.1, 0.3, 3.0, 10.0];
+        /// Loads that a run takes up and gives off, at most.
+        const MOST_LOADS: f64 = 30.0;
         let cause = self.cause(&part.trial);
         let mut parts = stand.parts.clone();
         parts.push(part.clone());
@@ -223,7 +225,9 @@ impl State<'_> {
             judged.max_by(|one, other| one.0.total_cmp(&other.0))
         };
         let longest = profile.longest();
-        let possible = lengths.iter().copied().filter(|length| *length < longest);
+        // Nor does it change its mind all the time: a load that comes and goes within a small part of the way is none.
+        let least = if cause.id == "payload_change" { longest / MOST_LOADS } else { 0.0 };
+        let possible = lengths.iter().copied().filter(|length| (least..longest).contains(length));
         let (gain, spread) = best_of(
             possible.map(|length| Spread { length, size: usual, knots_per_length, jumps: None }).collect(),
         )?;

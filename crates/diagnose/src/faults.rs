@@ -65,6 +65,12 @@ pub fn faults(drives: &[Recorded]) -> (Vec<Fault>, Vec<Vec<bool>>) {
     (all, usable)
 }
 
+/// A channel of a run that is its own, and no other one that stands in for it.
+fn own<'a>(drive: &'a Recorded, name: &str) -> Option<&'a [f64]> {
+    let other = name == "speed_m_s" && drive.stands_in.contains(&true);
+    drive.measured.trace.get(name).filter(|_| !other)
+}
+
 fn place(drive: &Recorded, from: usize, to: usize) -> Interval {
     let time_s = drive.measured.trace.time_s();
     Interval {
@@ -114,7 +120,7 @@ fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fa
     let mut seconds = 0.0;
     for (run, drive) in drives.iter().enumerate() {
         let trace: &Trace = &drive.measured.trace;
-        let Some(values) = trace.get(name) else { continue };
+        let Some(values) = own(drive, name) else { continue };
         let time_s = trace.time_s();
         let equal = still(values);
         let enough = HELD * usual_length(&equal, values.len());
@@ -154,7 +160,7 @@ fn coarse(drives: &[Recorded], name: &str) -> Option<Fault> {
     let (mut repeated, mut count) = (0usize, 0usize);
     let mut steps: Vec<f64> = Vec::new();
     for drive in drives {
-        let Some(values) = drive.measured.trace.get(name) else { continue };
+        let Some(values) = own(drive, name) else { continue };
         for (index, pair) in values.windows(2).enumerate() {
             let step = (pair[1] - pair[0]).abs();
             if drive.motion.value[index] > SLOWEST_M_S && step.is_finite() && pair[0] != 0.0 {
@@ -192,7 +198,7 @@ fn coarse(drives: &[Recorded], name: &str) -> Option<Fault> {
 /// How far a channel reaches over all runs.
 fn reach(drives: &[Recorded], name: &str) -> f64 {
     let values = || {
-        let traces = drives.iter().filter_map(|drive| drive.measured.trace.get(name));
+        let traces = drives.iter().filter_map(|drive| own(drive, name));
         traces.flatten().copied().filter(|value| value.is_finite())
     };
     values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
@@ -203,7 +209,7 @@ fn missing(drives: &[Recorded], name: &str) -> Option<Fault> {
     let (mut lost, mut count) = (0usize, 0usize);
     let mut stretches = Vec::new();
     for drive in drives {
-        let Some(values) = drive.measured.trace.get(name) else { continue };
+        let Some(values) = own(drive, name) else { continue };
         count += values.len();
         let mut index = 0;
         while index < values.len() {

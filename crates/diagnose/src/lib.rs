@@ -39,6 +39,7 @@ mod said;
 mod search;
 mod sensors;
 mod sharpen;
+mod standin;
 mod state;
 mod straying;
 mod student;

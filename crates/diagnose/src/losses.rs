@@ -6,8 +6,10 @@
 //! square of the torque, iron and windage losses with speed.
 
 use crate::Case;
-use crate::balance::{Kind, System, longest_period_s};
+use crate::balance::{FUEL_J_KG, Kind, System, longest_period_s};
+use crate::gram::Column;
 use crate::recorded::Recorded;
+use crate::said::Said;
 use crate::sensors::Small;
 use headland_sim::local_fit;
 
@@ -46,6 +48,86 @@ pub fn small_losses(case: &Case, system: &System) -> Vec<Small> {
     smalls.into_iter().filter(|small| small.sd.is_finite() && small.sd > 0.0).collect()
 }
 
+/// A power that is made of recorded motion changes at once; what is measured of it follows as fast as engine, pump and
+/// whatever estimates it. So a part of it may come late, by about a block or by several: nobody would call that missing
+/// physics, and the mass must not have to explain it.
+///
+/// Source: fuel dynamics as first-order lags; Guzzella and Onder, *Introduction to Modeling and Control of Internal Combustion
+/// Engine Systems* (2010), section 2.4.
+pub fn slow_powers(case: &Case, system: &System) -> Vec<Small> {
+    /// Time constants, in blocks.
+    const LATE: [(&str, f64); 2] = [("late_power", 1.0), ("later_power", 4.0)];
+    /// Usual share of the power that is late by as much.
+    const SHARE: f64 = 0.5;
+    let of = |(id, blocks): (&'static str, f64)| {
+        let column = system.column(|kind| {
+            let of_run = |(run, said): (&Recorded, &Said)| match made_of_motion(kind, run, said) {
+                Some(power) => late(run.measured.trace.time_s(), &power, blocks * system.block_s(kind)),
+                None => Vec::new(),
+            };
+            case.runs.iter().zip(&case.nominal).map(of_run).collect()
+        });
+        Small { id, column, sd: SHARE }
+    };
+    let any = |column: &Column| column.iter().any(|chunk| chunk.iter().any(|value| *value != 0.0));
+    LATE.into_iter().map(of).filter(|small| any(&small.column)).collect()
+}
+
+/// What every engine's own torque is wrong by: it is no measurement, but what its controller makes of injection and speed.
+///
+/// A scale and an offset, smaller than those that were found on tractors (Marx et al., 1 to 5 % of the greatest torque), so
+/// that what lies beyond is still seen.
+pub fn torque_errors(case: &Case, system: &System) -> Vec<Small> {
+    /// Of the torque, and of the greatest torque.
+    const SCALE: f64 = 0.02;
+    const OFFSET: f64 = 0.01;
+    let of = |id: &'static str, samples: &dyn Fn(usize) -> Vec<f64>, sd: f64| {
+        let column = system.column(|kind| {
+            let of_run = |run: usize| if kind == Kind::Shaft { samples(run) } else { Vec::new() };
+            (0..case.runs.len()).map(of_run).collect()
+        });
+        Small { id, column, sd }
+    };
+    if !system.has(Kind::Shaft) {
+        return Vec::new();
+    }
+    let torques = case.runs.iter().filter_map(|run| run.measured.trace.get("engine_torque_n_m"));
+    let greatest = torques.flatten().copied().filter(|torque| torque.is_finite()).fold(0.0, f64::max);
+    let power = |run: usize| case.nominal[run].engine_w.clone().unwrap_or_default();
+    let speed =
+        |run: usize| case.runs[run].measured.trace.get("engine_speed_rad_s").unwrap_or_default().to_vec();
+    let errors = vec![of("torque_scale", &power, SCALE), of("torque_offset", &speed, OFFSET * greatest)];
+    errors.into_iter().filter(|small| small.sd > 0.0).collect()
+}
+
+/// The modelled power of a balance, where it is made of the motion alone [W].
+fn made_of_motion(kind: Kind, run: &Recorded, said: &Said) -> Option<Vec<f64>> {
+    if run.force_n.is_some() {
+        return None;
+    }
+    match kind {
+        Kind::Shaft => said.engine_w.clone(),
+        Kind::Charge => said.drawn_w(run),
+        Kind::Fuel => Some(said.fuel_kg_s.as_ref()?.iter().map(|fuel| FUEL_J_KG * fuel).collect()),
+        _ => None,
+    }
+}
+
+/// What a lag of a time constant [s] adds to samples.
+fn late(time_s: &[f64], values: &[f64], constant_s: f64) -> Vec<f64> {
+    let mut state = f64::NAN;
+    let mut before_s = f64::NAN;
+    let one = |(time_s, value): (&f64, &f64)| {
+        if value.is_finite() {
+            let kept = (-(time_s - before_s) / constant_s).exp();
+            state = if state.is_finite() { value + (state - value) * kept } else { *value };
+            before_s = *time_s;
+        }
+        state - value
+    };
+    time_s.iter().zip(values).map(one).collect()
+}
+
 /// Power at the wheels [W].
 fn power(run: &Recorded) -> Vec<f64> {
     let force = run.force_n.as_deref().unwrap_or(&[]);
@@ -55,4 +137,19 @@ fn power(run: &Recorded) -> Vec<f64> {
 fn rms(runs: &[Vec<f64>]) -> f64 {
     let finite: Vec<f64> = runs.iter().flatten().copied().filter(|value| value.is_finite()).collect();
     (finite.iter().map(|value| value * value).sum::<f64>() / finite.len().max(1) as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::late;
+
+    /// After a step of one, a lag of a time constant is behind by e⁻¹ of it one time constant later.
+    #[test]
+    fn a_lag_is_behind_a_step_and_not_behind_what_stands() {
+        let time_s: Vec<f64> = (0..60).map(f64::from).collect();
+        let step: Vec<f64> = (0..60).map(|index| if index < 20 { 3.0 } else { 4.0 }).collect();
+        let behind = late(&time_s, &step, 5.0);
+        assert!(behind[19].abs() < 1e-12 && (behind[24] + (-1.0f64).exp()).abs() < 1e-12);
+        assert!(behind[59].abs() < 1e-3);
+    }
 }

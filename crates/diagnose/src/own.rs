@@ -185,6 +185,7 @@ fn cause(id: &'static str, words: &'static str, term: Term, own: Own) -> Cause {
         experiment: EXPERIMENT,
         law: None,
         own: Some(own),
+        run: None,
     }
 }
 

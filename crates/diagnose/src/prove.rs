@@ -76,8 +76,9 @@ pub fn prove(case: &Case, system: &System, refined: &Refined) -> Result<Proof, D
         let chosen: Vec<&Errors> = errors
             .iter()
             .zip(&case.fit)
-            .filter(|(_, fit)| **fit == wanted)
-            .map(|(errors, _)| errors)
+            .zip(&case.bears)
+            .filter(|((_, fit), bears)| **fit == wanted && **bears)
+            .map(|((errors, _), _)| errors)
             .collect();
         let root = |of: fn(&Errors) -> f64| {
             let squares: Vec<f64> =
@@ -108,7 +109,9 @@ pub fn prove(case: &Case, system: &System, refined: &Refined) -> Result<Proof, D
 }
 
 fn by_path(refined: &Refined) -> bool {
-    refined.causes.iter().any(|cured| cured.function().is_some() || !cured.events.is_empty())
+    let own =
+        |cured: &Cured| cured.function().is_some() || !cured.events.is_empty() || cured.cause.run.is_some();
+    refined.causes.iter().any(own)
 }
 
 /// The balance whose signal tells before and after: that of what was found first, and else that of motion.
@@ -210,7 +213,7 @@ pub fn reconstruct(
     let kind = system.kinds[cured.accepted.balance];
     let unit = match kind {
         Kind::Motion => "n",
-        Kind::Battery | Kind::Voltage | Kind::Fuel => "w",
+        Kind::Shaft | Kind::Battery | Kind::Charge | Kind::Voltage | Kind::Fuel => "w",
         Kind::Slip => "m_s",
         Kind::Parity if system.has(Kind::Motion) => "n",
         Kind::Parity => "m_s2",
@@ -226,7 +229,14 @@ pub fn reconstruct(
             if kind == Kind::Voltage {
                 return lost_w(run, before, after);
             }
-            change(kind, run, before, after).iter().map(|value| way * value).collect()
+            let values = change(kind, run, before, after);
+            let of_sample = |(index, value): (usize, &f64)| {
+                // Driven by the wheels, the ground is slower by the slip of the slower speed.
+                let stands_in = kind == Kind::Slip && run.stands_in.get(index).is_some_and(|own| *own);
+                let share = before.wheel_speed_m_s[index] / after.wheel_speed_m_s[index];
+                way * value * if stands_in && share.is_finite() { share } else { 1.0 }
+            };
+            values.iter().enumerate().map(of_sample).collect()
         };
         case.runs.iter().zip(bare.iter().zip(after)).map(of_run).collect()
     };
@@ -266,8 +276,9 @@ pub fn reconstruct(
 /// What a sensor's fault adds to its channel.
 fn sensor_error(case: &Case, id: &'static str, value: f64) -> Result<Reconstructed, DiagnoseError> {
     const CHANNELS: [(&str, &str); 5] = [
-        ("speed_m_s", "m_s"),
+        // The speed of wheels may stand in for that over ground, and moves it then.
         ("wheel_speed_m_s", "m_s"),
+        ("speed_m_s", "m_s"),
         ("specific_force_m_s2", "m_s2"),
         ("tractive_force_n", "n"),
         ("motor_torque_n_m", "n_m"),

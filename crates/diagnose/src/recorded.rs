@@ -1,14 +1,19 @@
 //! A recorded run with its motion, its place and the force that moved it.
 
+use crate::standin::Prepared;
+use headland_calibrate::statistics::{quantile_of_sorted, sorted};
 use headland_calibrate::study::{Measured, Study};
+use headland_plugin::Shaft;
 use headland_sim::{Drive, LocalFit, Model, local_fit, travelled};
-use headland_trace::{Channel, Trace};
+use headland_trace::{Channel, Origin, Trace};
 
 /// One recorded run with its motion.
 #[derive(Clone, Debug)]
 pub struct Recorded {
     /// The run.
     pub measured: Measured,
+    /// Its number among the runs.
+    pub number: usize,
     /// Smoothed speed and acceleration.
     pub motion: LocalFit,
     /// Acceleration that the recorded force and the nominal model make [m/s²]; the recorded one where no force is known.
@@ -23,6 +28,16 @@ pub struct Recorded {
     pub pass: usize,
     /// Force at the wheels that was measured [N]; NaN where it is not known.
     pub force_n: Option<Vec<f64>>,
+    /// Samples whose speed is that of the wheels, for want of one over ground; empty where it is none.
+    pub stands_in: Vec<bool>,
+    /// Power at the crankshaft, recorded torque times recorded speed [W], where no force was made of that torque.
+    pub engine_w: Option<Vec<f64>>,
+    /// Force at the wheels that this power makes [N], as far as the driveline can tell; NaN where it cannot. It makes wheels
+    /// slip; the power itself is what is balanced.
+    pub pull_n: Option<Vec<f64>>,
+    /// What the battery holds nominally [J], where its state of charge is all that is known of it and fine enough to be held
+    /// against a power.
+    pub charge_j: Option<f64>,
 }
 
 /// Below this speed friction at rest decides, and no balance of motion holds [m/s].
@@ -33,11 +48,12 @@ pub const SLOWEST_M_S: f64 = 0.4;
 const GUST_S: f64 = 5.0;
 
 /// Prepares the runs of a study.
-pub fn recorded(study: &Study, recording: &headland_recording::Recording, model: &Model) -> Vec<Recorded> {
+pub fn recorded(study: &Study, prepared: &Prepared, model: &Model) -> Vec<Recorded> {
     let mut paths: Vec<Option<String>> = Vec::new();
     let mut passes: Vec<usize> = Vec::new();
     let mut all = Vec::new();
-    for (measured, described) in study.runs.iter().zip(&recording.runs) {
+    let described = prepared.recording.runs.iter().zip(&prepared.stands_in);
+    for (measured, (described, stands_in)) in study.runs.iter().zip(described) {
         let path = match &described.path {
             Some(path) => paths.iter().position(|known| known.as_ref() == Some(path)),
             None => None,
@@ -51,14 +67,20 @@ pub fn recorded(study: &Study, recording: &headland_recording::Recording, model:
         passes[path] += 1;
         let speed = measured.trace.get("speed_m_s").map(<[f64]>::to_vec).unwrap_or_default();
         let motion = local_fit(measured.trace.time_s(), &speed, measured.how.smoothing_s);
+        let engine = engine(&measured.trace, model);
         all.push(Recorded {
+            number: all.len(),
             position_m: position(measured, &motion),
             acceleration_m_s2: motion.slope.clone(),
             force_n: force(&measured.trace, model, &motion.value),
+            stands_in: stands_in.clone(),
+            pull_n: pull(&measured.trace, model),
+            engine_w: engine,
+            charge_j: charge(&measured.trace, model),
             motion,
             path,
             pass,
-            measured: Measured { trace: steady_wind(&measured.trace), ..measured.clone() },
+            measured: Measured { trace: without_leaps(&steady_wind(&measured.trace)), ..measured.clone() },
         });
     }
     all
@@ -91,6 +113,32 @@ fn steady_wind(trace: &Trace) -> Trace {
         if made.push(channel.name.clone(), values, channel.origin).is_err() {
             return trace.clone();
         }
+    }
+    made
+}
+
+/// The trace without the places at which a state of charge leaps: what manages a battery corrects its estimate now and then,
+/// and no power does that.
+fn without_leaps(trace: &Trace) -> Trace {
+    /// A leap is so many times the change that all but one in a hundred of those between neighbouring samples stay below.
+    const LEAP: f64 = 3.0;
+    const USUAL: f64 = 0.99;
+    let Some(charge) = trace.get("state_of_charge") else { return trace.clone() };
+    let time_s = trace.time_s();
+    let rate =
+        |index: usize| ((charge[index] - charge[index - 1]) / (time_s[index] - time_s[index - 1])).abs();
+    let moves: Vec<f64> = (1..charge.len()).map(rate).filter(|rate| *rate > 0.0).collect();
+    if moves.is_empty() {
+        return trace.clone();
+    }
+    let most = LEAP * quantile_of_sorted(&sorted(&moves), USUAL);
+    let leaps = |index: usize| index > 0 && rate(index) > most;
+    let kept = charge.iter().enumerate().map(|(index, charge)| if leaps(index) { f64::NAN } else { *charge });
+    let kept: Vec<f64> = kept.collect();
+    let mut made = trace.clone();
+    let origin = made.remove("state_of_charge").map_or(Origin::Measured, |channel| channel.origin);
+    if made.push("state_of_charge", kept, origin).is_err() {
+        return trace.clone();
     }
     made
 }
@@ -156,6 +204,55 @@ fn force(trace: &Trace, model: &Model, speed: &[f64]) -> Option<Vec<f64>> {
         None => {}
     }
     force
+}
+
+/// Power at the crankshaft [W], where torque and speed of the engine were recorded, no force is made of the torque, and no
+/// fuel tells of the same power better than the torque that a controller reckons.
+fn engine(trace: &Trace, model: &Model) -> Option<Vec<f64>> {
+    if trace.get("fuel_rate_kg_s").is_some() {
+        return None;
+    }
+    let (torque, speed) = (trace.get("engine_torque_n_m")?, trace.get("engine_speed_rad_s")?);
+    let forced = trace.get("tractive_force_n").is_none()
+        && trace.get("motor_torque_n_m").is_none()
+        && model.driveline.force_of_torque_n(1.0, 1.0).is_some();
+    (!forced).then(|| torque.iter().zip(speed).map(|(torque, speed)| torque * speed).collect())
+}
+
+/// Force at the wheels that the recorded power of the engine makes [N], where no force was recorded.
+fn pull(trace: &Trace, model: &Model) -> Option<Vec<f64>> {
+    if trace.get("tractive_force_n").is_some() || trace.get("motor_torque_n_m").is_some() {
+        return None;
+    }
+    let (torque, speed) = (trace.get("engine_torque_n_m")?, trace.get("engine_speed_rad_s")?);
+    let wheels = trace.get("wheel_speed_m_s").or_else(|| trace.get("speed_m_s"))?;
+    let taken = |name: &str, index: usize| {
+        trace.get(name).map(|values| values[index]).filter(|value| value.is_finite()).unwrap_or(0.0)
+    };
+    let one = |index: usize| {
+        let shaft = Shaft {
+            torque_n_m: torque[index],
+            speed_rad_s: speed[index],
+            wheel_speed_m_s: wheels[index],
+            auxiliary_power_w: taken("auxiliary_power_w", index),
+            shaft_power_w: taken("pto_power_w", index) + taken("hydraulic_power_w", index),
+        };
+        model.driveline.force_of_shaft_n(&shaft).unwrap_or(f64::NAN)
+    };
+    let pull: Vec<f64> = (0..trace.len()).map(one).collect();
+    pull.iter().any(|force| force.is_finite()).then_some(pull)
+}
+
+/// What the battery holds nominally [J], where nothing but its state of charge was recorded, in steps that are fine enough.
+fn charge(trace: &Trace, model: &Model) -> Option<f64> {
+    /// A charge that changes less often in a run says nothing about its powers.
+    const FEWEST_STEPS: usize = 20;
+    if trace.get("battery_power_w").is_some() {
+        return None;
+    }
+    let charge = trace.get("state_of_charge")?;
+    let steps = charge.windows(2).filter(|pair| pair[0] != pair[1] && pair[1].is_finite()).count();
+    if steps < FEWEST_STEPS { None } else { model.driveline.battery_capacity_j() }
 }
 
 /// Where a run is, sample by sample [m].

@@ -111,7 +111,7 @@ pub fn refine(
         return Ok(refined);
     }
     let new: Vec<Cured> = physics.iter().map(|place| refined.causes[*place].clone()).collect();
-    let (fitted, slots) = match nonlinear(case, system, pool, found, &new) {
+    let (fitted, slots) = match nonlinear(case, system, pool, found, &new, None) {
         Ok(fitted) => fitted,
         Err(DiagnoseError::Interrupted) => return Err(DiagnoseError::Interrupted),
         // Where the fit runs into what the effects refuse, the linear estimate stands.
@@ -120,19 +120,35 @@ pub fn refine(
     // What nothing measured tells apart a fit without limits puts anywhere: there the linear estimate stands as well, which
     // knows what was known before.
     let lost = |estimate: &Estimate, sd: f64| estimate.ci95[1] - estimate.ci95[0] > LOST * 2.0 * HALF_95 * sd;
-    let of_slots = slots.iter().map(|(place, term)| {
-        let own = &new[*place];
-        loosely(&own.cause.terms[*term], own.values[*term].0).2
-    });
+    let of_slots: Vec<f64> = slots
+        .iter()
+        .map(|(place, term)| {
+            let own = &new[*place];
+            loosely(&own.cause.terms[*term], own.values[*term].0).2
+        })
+        .collect();
     let of_free = case.study.parameters.iter().map(|one| one.sd.unwrap_or(f64::INFINITY));
-    if fitted.estimates.iter().zip(of_free.chain(of_slots)).any(|(estimate, sd)| lost(estimate, sd)) {
+    let all = of_free.chain(of_slots.iter().copied());
+    let count = refined.free.len();
+    let of_causes = if fitted.estimates.iter().zip(all).any(|(estimate, sd)| lost(estimate, sd)) {
+        // What was found is then fitted once more beside the free parameters as they are: its columns were made beside
+        // those of the scenario.
+        let beside = refined.values();
+        match nonlinear(case, system, pool, found, &new, Some(&beside)) {
+            Ok((fitted, _)) => fitted.estimates,
+            Err(DiagnoseError::Interrupted) => return Err(DiagnoseError::Interrupted),
+            Err(_) => return Ok(refined),
+        }
+    } else {
+        for (own, estimate) in refined.free.iter_mut().zip(&fitted.estimates[..count]) {
+            (own.value, own.ci95) = (estimate.value, widest(estimate.value, estimate.ci95, own.ci95));
+        }
+        fitted.estimates[count..].to_vec()
+    };
+    if of_causes.iter().zip(&of_slots).any(|(estimate, sd)| lost(estimate, *sd)) {
         return Ok(refined);
     }
-    let count = refined.free.len();
-    for (own, estimate) in refined.free.iter_mut().zip(&fitted.estimates[..count]) {
-        (own.value, own.ci95) = (estimate.value, widest(estimate.value, estimate.ci95, own.ci95));
-    }
-    for ((place, term), estimate) in slots.iter().zip(&fitted.estimates[count..]) {
+    for ((place, term), estimate) in slots.iter().zip(&of_causes) {
         let own = &mut refined.causes[physics[*place]].values[*term];
         *own = (estimate.value, widest(estimate.value, estimate.ci95, own.1));
     }
@@ -217,15 +233,18 @@ fn loosely(term: &Term, value: f64) -> (f64, (f64, f64), f64) {
     (value, (0.2 * value, 5.0 * value), 0.6 * value.abs())
 }
 
+/// Fits causes together with the free parameters, or beside them where they are held.
 fn nonlinear(
     case: &Case,
     system: &System,
     pool: &Pool,
     found: &Found,
     new: &[Cured],
+    held: Option<&[f64]>,
 ) -> Result<(Fit, Vec<Slot>), DiagnoseError> {
-    let mut parameters: Vec<Parameter> = case.study.parameters.clone();
-    let count = parameters.len();
+    let mut parameters: Vec<Parameter> =
+        if held.is_some() { Vec::new() } else { case.study.parameters.clone() };
+    let (free, count) = (parameters.len(), case.study.parameters.len());
     let mut slots: Vec<Slot> = Vec::new();
     for (place, cured) in new.iter().enumerate() {
         for (index, term) in cured.cause.terms.iter().enumerate() {
@@ -252,10 +271,10 @@ fn nonlinear(
     let evaluate = |x: &[f64]| -> Result<Residuals, DiagnoseError> {
         let mut effects: Vec<(Cause, Vec<f64>)> =
             new.iter().map(|cured| (cured.cause.clone(), cured.values())).collect();
-        for ((place, index), value) in slots.iter().zip(&x[count..]) {
+        for ((place, index), value) in slots.iter().zip(&x[free..]) {
             effects[*place].1[*index] = *value;
         }
-        let said = said_with_all(case, &case.runs, &effects, &x[..count])?;
+        let said = said_with_all(case, &case.runs, &effects, held.unwrap_or(&x[..free]))?;
         let residual = system.residual_of(&case.runs, &said);
         let mut clusters: Residuals = Vec::new();
         let mut cluster_of: Vec<usize> = Vec::new();
@@ -314,7 +333,7 @@ pub fn said_with_all(
         }
         Ok(Scenario::of(document, case.registry)?)
     };
-    if effects.iter().any(|(cause, _)| cause.id == "multipass") {
+    if effects.iter().any(|(cause, _)| cause.id == "multipass" || cause.run.is_some()) {
         let scenarios: Vec<Scenario> = runs.iter().map(scenario_for).collect::<Result<_, _>>()?;
         return said(runs, &case.kinds, |run| {
             Ok(case.study.model_of(&scenarios[run], &runs[run].measured, values)?)

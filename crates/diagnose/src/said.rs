@@ -5,7 +5,7 @@ use crate::balance::Kind;
 use crate::recorded::Recorded;
 use crate::voltage::{residual_v, resistance_ohm};
 use headland_sim::{Drive, Inputs, Model, Replay, replay};
-use headland_trace::Trace;
+use headland_trace::{Origin, Trace};
 use rayon::prelude::*;
 
 /// What a model says of one run.
@@ -21,6 +21,10 @@ pub struct Said {
     pub wheel_speed_m_s: Vec<f64>,
     /// Power from the battery [W].
     pub battery_w: Option<Vec<f64>>,
+    /// State of charge.
+    pub charge: Option<Vec<f64>>,
+    /// Power at the crankshaft [W].
+    pub engine_w: Option<Vec<f64>>,
     /// Resistance of the battery [Ω].
     pub resistance_ohm: Option<f64>,
     /// What it leaves of the recorded voltage, fast parts only [V].
@@ -60,7 +64,7 @@ fn say(model: &Model, run: &Recorded, kinds: &[Kind]) -> Result<Said, DiagnoseEr
     let brake = modelled.get("brake_force_n");
     let resistance = |i: usize| tractive[i] - brake.map_or(0.0, |brake| brake[i]) - mass[i] * acceleration[i];
     let resistance_n = (0..tractive.len()).map(resistance).collect();
-    let powers = kinds.iter().any(|kind| matches!(kind, Kind::Battery | Kind::Voltage | Kind::Fuel));
+    let powers = kinds.iter().any(|kind| kind.is_power() || *kind == Kind::Voltage);
     let by_torque =
         trace.get("motor_torque_n_m").is_some() && model.driveline.force_of_torque_n(1.0, 1.0).is_some();
     let by_torque = (powers && by_torque)
@@ -75,16 +79,65 @@ fn say(model: &Model, run: &Recorded, kinds: &[Kind]) -> Result<Said, DiagnoseEr
     let resistance_ohm = (powers && logged("battery_voltage_v") && logged("battery_current_a"))
         .then(|| resistance_ohm(powered))
         .flatten();
+    let engine = (powered.get("engine_torque_n_m"), powered.get("engine_speed_rad_s"));
+    let engine_w = match engine {
+        (Some(torque), Some(speed)) => Some(torque.iter().zip(speed).map(|(t, omega)| t * omega).collect()),
+        _ => None,
+    };
+    let slips = kinds.contains(&Kind::Slip) && run.forward().is_none();
+    let pulled = if slips { pulled(run, &modelled)? } else { None };
+    let wheel_speed_m_s = match pulled {
+        Some(trace) => {
+            replay(model, &trace, &Replay { drive: Drive::Force, window_s: Some(POINTWISE_S), ..how })
+                .map_err(|error| DiagnoseError::Replay { run: run.measured.id.clone(), error })?
+                .trace
+                .get("wheel_speed_m_s")
+                .map(<[f64]>::to_vec)
+        }
+        None => None,
+    };
     Ok(Said {
+        charge: powered.get("state_of_charge").map(<[f64]>::to_vec),
+        engine_w,
         voltage_left_v: resistance_ohm.map_or_else(Vec::new, |ohm| residual_v(run, ohm)),
         resistance_ohm,
         resistance_n,
         slope_m_s2: slope(model, &modelled, &mass),
-        wheel_speed_m_s: get("wheel_speed_m_s"),
+        wheel_speed_m_s: wheel_speed_m_s.unwrap_or_else(|| get("wheel_speed_m_s")),
         battery_w,
         fuel_kg_s: powered.get("fuel_rate_kg_s").map(<[f64]>::to_vec),
         effective_mass_kg: mass,
     })
+}
+
+/// The run with the force that its engine makes at the wheels, where one is known and the wheels of the model slip; where it
+/// is not known, with the one that the motion takes.
+fn pulled(run: &Recorded, modelled: &Trace) -> Result<Option<Trace>, DiagnoseError> {
+    let Some(pull) = &run.pull_n else { return Ok(None) };
+    let get = |name: &str| modelled.get(name).unwrap_or(&[]);
+    let turns = get("wheel_speed_m_s").iter().zip(get("speed_m_s"));
+    if turns.filter(|(one, other)| one.is_finite() && other.is_finite()).all(|(one, other)| one == other) {
+        return Ok(None);
+    }
+    let force = pull.iter().zip(get("tractive_force_n"));
+    let force = force.map(|(pull, takes)| if pull.is_finite() { *pull } else { *takes }).collect();
+    let mut trace = run.measured.trace.clone();
+    trace.push("tractive_force_n", force, Origin::Measured)?;
+    Ok(Some(trace))
+}
+
+impl Said {
+    /// Power that the state of charge says is drawn, as the battery of a run nominally holds it [W].
+    pub fn drawn_w(&self, run: &Recorded) -> Option<Vec<f64>> {
+        let (charge, energy_j) = (self.charge.as_ref()?, run.charge_j?);
+        let time_s = run.measured.trace.time_s();
+        let last = charge.len().saturating_sub(1);
+        let one = |index: usize| {
+            let (from, to) = (index.saturating_sub(1), (index + 1).min(last));
+            -energy_j * (charge[to] - charge[from]) / (time_s[to] - time_s[from])
+        };
+        Some((0..charge.len()).map(one).collect())
+    }
 }
 
 /// The slope's part of the specific force [m/s²]; slopes that effects add are slopes to an accelerometer as well.
@@ -105,8 +158,12 @@ fn slope(model: &Model, modelled: &Trace, mass_kg: &[f64]) -> Vec<f64> {
 /// Every recorded circumstance, whatever the scenario's replay is told.
 fn inputs(trace: &Trace, how: &Replay) -> Vec<Inputs> {
     let mut also = how.also.clone();
-    for input in [Inputs::Coasting, Inputs::Curvature, Inputs::AirTemperature, Inputs::Heading] {
-        if !also.contains(&input) && input.whole(trace) {
+    let circumstances =
+        [Inputs::Coasting, Inputs::Curvature, Inputs::AirTemperature, Inputs::Heading, Inputs::EngineSpeed];
+    // Where its torque is known as well, the power of the engine is, and its speed is the model's own.
+    let turns = |input: Inputs| input == Inputs::EngineSpeed && trace.get("engine_torque_n_m").is_some();
+    for input in circumstances {
+        if !also.contains(&input) && input.whole(trace) && !turns(input) {
             also.push(input);
         }
     }

@@ -99,6 +99,8 @@ const DRAWS: u64 = 300;
 const LEAST_EFFECT: f64 = 0.15;
 /// A cause has to be at least this share of what was to be explained, as mean square.
 const LEAST_SHARE: f64 = 0.03;
+/// A squared correlation below which a cause does not stand for another one.
+const UNLIKE: f64 = 0.02;
 /// Two causes that leave less than this share of the smaller one when they are added cancel each other: neither is there.
 const CANCELLED: f64 = 0.3;
 
@@ -236,6 +238,8 @@ impl State<'_> {
                     reduced.squared_correlation(columns, &part.trial.columns, &nuisance, &self.sd())
                 };
                 let likest = replaced.into_iter().map(|place| (place, like(&place)));
+                // What is like none of them explains something else.
+                let likest = likest.filter(|(_, correlation)| *correlation > UNLIKE);
                 if let Some((place, correlation)) = likest.max_by(|one, other| one.1.total_cmp(&other.1)) {
                     let gain = found.accepted[place].gain + worth(other) - best;
                     let cause = part.trial.cause;
@@ -257,9 +261,9 @@ impl State<'_> {
         let mut out = Vec::new();
         loop {
             let Some(gains) = self.predicted(&best) else { return Some((best, out)) };
-            let timed = |place: &usize| match self.cause(&best.parts[*place].trial).form {
-                Form::OverTime => true,
-                Form::OverPosition => !self.paths_shared(),
+            let timed = |place: &usize| match self.cause(&best.parts[*place].trial) {
+                Cause { run: Some(_), .. } | Cause { form: Form::OverTime, .. } => true,
+                Cause { form: Form::OverPosition, .. } => !self.paths_shared(),
                 _ => false,
             };
             let worst = (0..gains.len())
@@ -272,9 +276,10 @@ impl State<'_> {
         }
     }
 
-    /// Whether a part is a function of time.
+    /// Whether a part is a function of time, or works in one run alone.
     pub fn timed(&self, part: &Part) -> bool {
-        part.spread.is_some() && self.cause(&part.trial).form == Form::OverTime
+        let cause = self.cause(&part.trial);
+        cause.run.is_some() || part.spread.is_some() && cause.form == Form::OverTime
     }
 
     /// Whether any two fitted runs drove the same path.

@@ -4,6 +4,7 @@ use crate::balance::{Kind, change, longest_period_s};
 use crate::gram::Column;
 use crate::recorded::Recorded;
 use crate::said::Said;
+use crate::standin::with_stand_in;
 use crate::{Case, DiagnoseError, System};
 use headland_trace::{Channel, Trace};
 use headland_units::constants::STANDARD_GRAVITY_M_S2;
@@ -82,7 +83,9 @@ pub fn fault(case: &Case, system: &System, id: &str, step: f64) -> Result<Column
                     Kind::Slip => less("wheel_speed_m_s", before, after),
                     // What drives the motor turns with the wheels: a wrong speed is a wrong power.
                     Kind::Voltage => Vec::new(),
-                    Kind::Battery | Kind::Fuel => change(kind, before, &said[run], &case.nominal[run]),
+                    Kind::Shaft | Kind::Battery | Kind::Charge | Kind::Fuel => {
+                        change(kind, before, &said[run], &case.nominal[run])
+                    }
                 };
                 samples.iter().map(|value| value / step).collect()
             })
@@ -175,6 +178,9 @@ fn moved(runs: &[Recorded], id: &str, value: f64, force: bool) -> Result<Vec<Rec
         let mut changed = run.clone();
         if let Some((name, samples)) = without(run, id, value, force) {
             changed.measured.trace = with_channel(&run.measured.trace, name, samples)?;
+            if name == "wheel_speed_m_s" && !run.stands_in.is_empty() {
+                changed.measured.trace = with_stand_in(&changed.measured.trace, &run.stands_in)?;
+            }
         }
         if id == "latency" {
             // What a late sensor would have said after the end nobody knows.

@@ -4,7 +4,7 @@
 use crate::balance::{Kind, System, change};
 use crate::catalogue::{Cause, Form};
 use crate::gram::Column;
-use crate::losses::small_losses;
+use crate::losses::{slow_powers, small_losses, torque_errors};
 use crate::recorded::Recorded;
 use crate::said::Said;
 use crate::sensors::{fault, small_faults};
@@ -75,7 +75,8 @@ pub fn nuisance(case: &Case, system: &System) -> Result<Pool, DiagnoseError> {
         pool.columns.push(system.column(|kind| difference(case, kind, &after, step)));
         pool.sd.push(sd);
     }
-    for small in small_faults(case, system)?.into_iter().chain(small_losses(case, system)) {
+    let small = small_faults(case, system)?.into_iter().chain(small_losses(case, system));
+    for small in small.chain(slow_powers(case, system)).chain(torque_errors(case, system)) {
         pool.small.push((small.id, pool.columns.len()));
         pool.columns.push(small.column);
         pool.sd.push(small.sd);
@@ -121,7 +122,7 @@ pub fn add_trial(
         let step = CAUSE_STEP * part.scale;
         let column = if cause.form == Form::Measured {
             let mut column = fault(case, system, cause.id, shape.first().copied().unwrap_or(step))?;
-            system.silence(&mut column, |kind| cause.balances.contains(&kind));
+            system.silence(&mut column, |kind| kind.among(cause.balances));
             column
         } else {
             let text = |run: &Recorded| signature(cause, term, step, shape, run);
@@ -129,7 +130,12 @@ pub fn add_trial(
                 system.kinds.iter().copied().filter(|kind| tried_on(cause, *kind, system)).collect();
             let after = case.said_with(&text, &case.study.priors(), &kinds)?;
             system.column(|kind| {
-                if kinds.contains(&kind) { difference(case, kind, &after, step) } else { silent(case) }
+                if !kinds.contains(&kind) {
+                    return silent(case);
+                }
+                let mut samples = difference(case, kind, &after, step);
+                mute(cause, kind, system, &mut samples);
+                samples
             })
         };
         found.push(Part { column, scale: part.scale, term });
@@ -143,11 +149,40 @@ fn silent(case: &Case) -> Vec<Vec<f64>> {
     vec![Vec::new(); case.runs.len()]
 }
 
-/// Whether a cause is tried on a balance: causes of motion are looked for in powers only where no force was measured.
+/// Whether a cause is tried on a balance, in any run.
 pub fn tried_on(cause: &Cause, kind: Kind, system: &System) -> bool {
-    let power = matches!(kind, Kind::Battery | Kind::Fuel);
-    let of_motion = cause.balances.contains(&Kind::Motion) && system.has(Kind::Motion);
-    cause.balances.contains(&kind) && !(power && of_motion)
+    if !kind.among(cause.balances) {
+        return false;
+    }
+    let forced = told_by_force(cause, kind, system);
+    system
+        .chunks
+        .iter()
+        .any(|chunk| system.kind(chunk) == kind && !forced.get(chunk.run).is_some_and(|one| *one))
+}
+
+/// Causes of motion are looked for in powers only in runs in which no force was measured: takes the others out.
+pub fn mute(cause: &Cause, kind: Kind, system: &System, samples: &mut [Vec<f64>]) {
+    for (samples, forced) in samples.iter_mut().zip(told_by_force(cause, kind, system)) {
+        if forced {
+            samples.clear();
+        }
+    }
+}
+
+/// The runs, by number, in which a force tells of the cause and a power need not.
+fn told_by_force(cause: &Cause, kind: Kind, system: &System) -> Vec<bool> {
+    let mut forced = Vec::new();
+    if !kind.is_power() || !cause.balances.contains(&Kind::Motion) {
+        return forced;
+    }
+    for chunk in system.chunks.iter().filter(|chunk| system.kind(chunk) == Kind::Motion) {
+        if forced.len() <= chunk.run {
+            forced.resize(chunk.run + 1, false);
+        }
+        forced[chunk.run] = true;
+    }
+    forced
 }
 
 /// A standard deviation for a parameter of which nothing is known.
@@ -179,6 +214,9 @@ fn signature(cause: &Cause, term: usize, step: f64, shape: &[f64], run: &Recorde
 
 /// What a run alone knows of an effect.
 pub fn for_run(text: &str, cause: &Cause, run: &Recorded) -> String {
+    if cause.run.is_some_and(|own| own != run.number) {
+        return cause.idle();
+    }
     if cause.id == "multipass" {
         let text = text.strip_suffix(')').unwrap_or(text);
         return format!("{text}, pass: {:?})", run.pass as f64 + 1.0);

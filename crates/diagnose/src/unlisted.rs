@@ -136,8 +136,7 @@ impl State<'_> {
             let effect = stand.effect(self, part);
             let (mut squares, mut fourths, mut count) = (0.0, 0.0, 0usize);
             for (chunk, rows) in self.system.chunks.iter().zip(&effect) {
-                if self.fit[chunk.run] && self.cause(&part.trial).balances.contains(&self.system.kind(chunk))
-                {
+                if self.fit[chunk.run] && self.system.kind(chunk).among(self.cause(&part.trial).balances) {
                     squares += rows.norm_squared();
                     fourths += rows.iter().map(|value| value.powi(4)).sum::<f64>();
                     count += rows.len();
@@ -327,6 +326,7 @@ impl Cause {
             experiment: "repeat the runs at other speeds, places and times than these, and see whether the equation holds",
             law: Some(law),
             own: None,
+            run: None,
         }
     }
 }

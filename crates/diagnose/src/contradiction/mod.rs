@@ -45,13 +45,13 @@ pub fn statements(case: &Case, sound: &[Vec<bool>]) -> Vec<String> {
 
 /// Takes everything that was found away where no run was held out, and says what it was.
 pub fn withhold(case: &Case, refined: &mut Refined) -> Option<String> {
-    if case.fit.iter().any(|fit| !fit) {
+    if case.fit.iter().zip(&case.bears).any(|(fit, bears)| !fit && *bears) {
         return None;
     }
     let mut names: Vec<&str> = refined.causes.iter().map(|cured| cured.cause.words).collect();
     names.dedup();
     refined.causes.clear();
-    let runs = case.runs.len();
+    let runs = case.bears.iter().filter(|bears| **bears).count();
     let runs = if runs == 1 { "one run".to_owned() } else { format!("{runs} runs") };
     let fits = if names.is_empty() {
         String::new()

@@ -124,7 +124,7 @@ pub fn courses(case: &Case, base: &Recorded, mass_kg: f64) -> Vec<Course> {
     speeds.retain(|speed| *speed > 0.4);
     let speed = |share: f64| round(quantile(&speeds, share).unwrap_or(1.0));
     let driven = matches!(base.forward(), Some(Drive::Force | Drive::Torque))
-        || case.kinds.iter().any(|kind| matches!(kind, Kind::Battery | Kind::Voltage | Kind::Fuel));
+        || case.kinds.iter().any(|kind| kind.is_power() || *kind == Kind::Voltage);
     if driven {
         for (name, share) in [("hold_low_speed", 0.1), ("hold_middle_speed", 0.5), ("hold_high_speed", 0.9)] {
             let speed_m_s = speed(share);

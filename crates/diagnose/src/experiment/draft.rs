@@ -35,11 +35,14 @@ fn shortened(drive: &Recorded) -> Recorded {
         acceleration_m_s2: keep(&drive.acceleration_m_s2),
         position_m: keep(&drive.position_m),
         force_n: drive.force_n.as_deref().map(keep),
+        engine_w: drive.engine_w.as_deref().map(keep),
+        pull_n: drive.pull_n.as_deref().map(keep),
         ..drive.clone()
     };
     drive.motion.value.truncate(short.len());
     drive.motion.slope.truncate(short.len());
     drive.measured.compared.truncate(short.len());
+    drive.stands_in.truncate(short.len());
     drive.measured.trace = short;
     drive
 }
@@ -94,6 +97,13 @@ pub fn drafted(
             trace.push(name, vec![0.0; time_s.len()], Origin::Measured)?;
         }
     }
+    if let Some(charge) = base.measured.trace.get("state_of_charge")
+        && base.charge_j.is_some()
+    {
+        let first = charge.iter().copied().find(|charge| charge.is_finite()).unwrap_or(0.5);
+        trace.push("state_of_charge", vec![first; time_s.len()], Origin::Measured)?;
+    }
+    let engine_w = base.engine_w.as_ref().map(|_| vec![0.0; time_s.len()]);
     let compared = vec![true; time_s.len()];
     let mut how = Replay { reversed_from_m: reversed.then_some(ground.to_m), ..base.measured.how.clone() };
     how.also.retain(|input| input.channels().iter().all(|name| trace.get(name).is_some()));
@@ -110,12 +120,17 @@ pub fn drafted(
     let acceleration_m_s2 = motion.slope.clone();
     Ok(Some(Recorded {
         measured,
+        number: base.number,
         motion,
         acceleration_m_s2,
         position_m,
         path: base.path,
         pass: base.pass,
         force_n: None,
+        stands_in: Vec::new(),
+        engine_w,
+        pull_n: None,
+        charge_j: base.charge_j,
     }))
 }
 

@@ -5,7 +5,7 @@ use crate::catalogue::{Cause, Form};
 use crate::gram::Column;
 use crate::recorded::Recorded;
 use crate::said::Said;
-use crate::trial::{Trial, for_run, tried_on};
+use crate::trial::{Trial, for_run, mute, tried_on};
 use crate::{Case, DiagnoseError, Kind, System};
 
 /// A term smaller than this share of its usual size is as good as nothing: its column is made with this much.
@@ -48,7 +48,10 @@ pub fn signatures(
             let of_run = |(run, (before, after)): (&Recorded, (&Said, &Said))| {
                 change(kind, run, before, after).iter().map(|one| -one / at[*term]).collect()
             };
-            case.runs.iter().zip(earlier.iter().zip(&after)).map(of_run).collect()
+            let mut samples: Vec<Vec<f64>> =
+                case.runs.iter().zip(earlier.iter().zip(&after)).map(of_run).collect();
+            mute(cause, kind, system, &mut samples);
+            samples
         }));
         before = Some(after);
     }

@@ -83,6 +83,7 @@ impl<'a> Stage<'a> {
             study,
             registry: case.registry,
             fit: vec![true; runs.len()],
+            bears: vec![true; runs.len()],
             raw: runs.clone(),
             runs,
             corrections: case.corrections.clone(),

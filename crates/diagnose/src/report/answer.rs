@@ -152,7 +152,8 @@ pub fn inconclusive(
 }
 
 fn ids(case: &Case, wanted: bool) -> Vec<String> {
-    let chosen = case.runs.iter().zip(&case.fit).filter(|(_, fit)| **fit == wanted);
+    let all = case.runs.iter().zip(case.fit.iter().zip(&case.bears));
+    let chosen = all.filter(|(_, (fit, bears))| **fit == wanted && **bears);
     chosen.map(|(drive, _)| drive.measured.id.clone()).collect()
 }
 

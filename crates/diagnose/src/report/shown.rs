@@ -24,8 +24,9 @@ pub fn shown(
     refined: &Refined,
     proof: &Proof,
 ) -> Result<Vec<Shown>, DiagnoseError> {
-    let any = case.fit.iter().any(|fit| !fit);
-    let chosen: Vec<usize> = (0..case.runs.len()).filter(|run| !any || !case.fit[*run]).take(SHOWN).collect();
+    let bearing = || (0..case.runs.len()).filter(|run| case.bears[*run]);
+    let any = bearing().any(|run| !case.fit[run]);
+    let chosen: Vec<usize> = bearing().filter(|run| !any || !case.fit[*run]).take(SHOWN).collect();
     let mut sound = case.raw.clone();
     for (id, value) in refined.artefacts() {
         sound = corrected(&sound, id, value)?;

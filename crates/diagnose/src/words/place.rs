@@ -50,7 +50,8 @@ fn amount(one: &Mismatch, full: bool) -> String {
     };
     match one.balance {
         Kind::Motion => beyond("resistance"),
-        Kind::Battery => beyond("power"),
+        Kind::Shaft => beyond("power of the engine"),
+        Kind::Battery | Kind::Charge => beyond("power"),
         Kind::Voltage => beyond("voltage"),
         Kind::Fuel => beyond("power in the fuel"),
         Kind::Slip => beyond("speed of the wheels"),

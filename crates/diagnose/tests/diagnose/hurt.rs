@@ -25,11 +25,16 @@ fn timed(recording: &Recording, time: impl Fn(usize, f64) -> f64) -> Recording {
 }
 
 #[test]
-fn a_run_without_speed_is_refused_with_its_name_and_the_channel() {
+fn a_run_without_speed_is_left_out_and_said_and_refused_where_none_has_any() {
     let mut recording = recorded(0.07, "");
     recording.runs[2].trace.remove("speed_m_s");
+    let told = found(&recording, &Options::default()).unwrap().diagnosis;
+    assert!(told.notes.iter().any(|note| note.contains("In r2 no speed was recorded")), "{:?}", told.notes);
+    for run in &mut recording.runs {
+        run.trace.remove("speed_m_s");
+    }
     let told = error(&recording);
-    assert!(told.contains("run `r2`: there is no channel `speed_m_s`"), "{told}");
+    assert!(told.contains("run `r0`: there is no channel `speed_m_s`"), "{told}");
     let told = error(&changed(&recorded(0.07, ""), "speed_m_s", |_, _, _| f64::NAN));
     assert!(told.contains("run `r0`: channel `speed_m_s` has fewer than two values"), "{told}");
 }

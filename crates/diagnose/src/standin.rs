@@ -1,0 +1,158 @@
+//! Runs that lack a channel: a recording brought to where every run that is left can drive the model.
+//!
+//! A run that does not know its speed over ground is driven by the speed of its wheels, which differs from it by the slip
+//! alone; what compares the two is left out there. A run that knows neither is left out.
+
+use crate::DiagnoseError;
+use headland_calibrate::study::StudyError;
+use headland_recording::{RecordedRun, Recording};
+use headland_trace::{Origin, Trace};
+
+/// Speed over ground and speed of the wheels.
+const OVER_GROUND: &str = "speed_m_s";
+const OF_WHEELS: &str = "wheel_speed_m_s";
+/// Fewer samples make no motion.
+const FEWEST: usize = 2;
+/// Speed over ground that is missing for less is a gap, and no channel that was not recorded [s].
+const LASTS_S: f64 = 10.0;
+
+/// A recording whose runs can all drive the model.
+pub struct Prepared {
+    /// The runs that are left, each with a speed.
+    pub recording: Recording,
+    /// For each of them the samples whose speed is that of the wheels; empty where it is none.
+    pub stands_in: Vec<Vec<bool>>,
+    /// What was decided, for people.
+    pub notes: Vec<String>,
+}
+
+/// Prepares a recording.
+///
+/// # Errors
+/// [`StudyError::NoSpeed`] where no run has a speed of any kind.
+pub fn prepared(recording: &Recording) -> Result<Prepared, DiagnoseError> {
+    let mut own = Prepared { recording: recording.clone(), stands_in: Vec::new(), notes: Vec::new() };
+    let (mut whole, mut partly, mut out): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
+    own.recording.runs.clear();
+    for run in &recording.runs {
+        let Some(stands_in) = standing_in(&run.trace) else {
+            out.push(run.id.clone());
+            continue;
+        };
+        let mut run = run.clone();
+        if stands_in.contains(&true) {
+            run.trace = with_stand_in(&run.trace, &stands_in)?;
+            if stands_in.contains(&false) { &mut partly } else { &mut whole }.push(run.id.clone());
+            own.stands_in.push(stands_in);
+        } else {
+            own.stands_in.push(Vec::new());
+        }
+        own.recording.runs.push(run);
+    }
+    if own.recording.runs.is_empty() {
+        return Err(match recording.runs.first() {
+            Some(run) => no_speed(run).into(),
+            None => StudyError::AllHeldOut.into(),
+        });
+    }
+    own.notes
+        .extend(told(&whole, "no speed over ground was recorded; the speed of the wheels stands in for it"));
+    own.notes.extend(told(
+        &partly,
+        "speed over ground is missing in places; there the speed of the wheels stands in for it",
+    ));
+    own.notes.extend(told(&out, "no speed was recorded, neither over ground nor of the wheels; left out"));
+    Ok(own)
+}
+
+/// Samples whose speed over ground is missing where that of the wheels is known; none where nothing can drive the run.
+fn standing_in(trace: &Trace) -> Option<Vec<bool>> {
+    let known = |name: &str| -> Vec<bool> {
+        trace.get(name).map_or_else(
+            || vec![false; trace.len()],
+            |values| values.iter().map(|one| one.is_finite()).collect(),
+        )
+    };
+    let count = |known: &[bool]| known.iter().filter(|known| **known).count();
+    let (ground, wheels) = (known(OVER_GROUND), known(OF_WHEELS));
+    let has_ground = count(&ground) >= FEWEST;
+    if count(&wheels) < FEWEST {
+        return has_ground.then(|| vec![false; trace.len()]);
+    }
+    if !has_ground {
+        return Some(vec![true; trace.len()]);
+    }
+    let mut stands_in = vec![false; trace.len()];
+    let time_s = trace.time_s();
+    let mut from = 0;
+    while from < ground.len() {
+        let to = (from..ground.len()).find(|index| ground[*index] != ground[from]).unwrap_or(ground.len());
+        if !ground[from] && time_s[to - 1] - time_s[from] >= LASTS_S {
+            stands_in[from..to].copy_from_slice(&wheels[from..to]);
+        }
+        from = to;
+    }
+    Some(stands_in)
+}
+
+/// The trace with the speed of the wheels where it stands in for that over ground.
+pub fn with_stand_in(trace: &Trace, stands_in: &[bool]) -> Result<Trace, DiagnoseError> {
+    let mut made = trace.clone();
+    let wheels = trace.get(OF_WHEELS).unwrap_or(&[]);
+    let ground = made.remove(OVER_GROUND);
+    let origin = ground.as_ref().map_or(Origin::Measured, |ground| ground.origin);
+    let own = |index: usize| ground.as_ref().map_or(f64::NAN, |ground| ground.values[index]);
+    let speed = stands_in
+        .iter()
+        .enumerate()
+        .map(|(index, stands_in)| if *stands_in { wheels[index] } else { own(index) })
+        .collect();
+    made.push(OVER_GROUND, speed, origin)?;
+    Ok(made)
+}
+
+fn told(runs: &[String], what: &str) -> Option<String> {
+    (!runs.is_empty()).then(|| format!("In {} {what}.", runs.join(", ")))
+}
+
+fn no_speed(run: &RecordedRun) -> StudyError {
+    StudyError::NoSpeed {
+        run: run.id.clone(),
+        there: run.trace.get(OVER_GROUND).is_some(),
+        measured: run.trace.channels().iter().map(|channel| channel.name.clone()).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn trace(speed: Option<&[f64]>, wheels: Option<&[f64]>) -> Trace {
+        let count = speed.or(wheels).unwrap_or(&[]).len();
+        let mut trace = Trace::new((0..count).map(|index| index as f64).collect()).unwrap();
+        for (name, values) in [(OVER_GROUND, speed), (OF_WHEELS, wheels)] {
+            if let Some(values) = values {
+                trace.push(name, values.to_vec(), Origin::Measured).unwrap();
+            }
+        }
+        trace
+    }
+
+    #[test]
+    fn wheels_stand_in_for_a_speed_that_was_not_recorded_and_not_for_a_short_gap() {
+        let wheels = [2.0; 40];
+        assert_eq!(standing_in(&trace(None, Some(&wheels))), Some(vec![true; 40]));
+        assert_eq!(standing_in(&trace(Some(&[f64::NAN; 40]), Some(&wheels))), Some(vec![true; 40]));
+        assert_eq!(standing_in(&trace(Some(&wheels), None)), Some(vec![false; 40]));
+        assert_eq!(standing_in(&trace(Some(&[f64::NAN; 40]), None)), None);
+        let mut ground = [1.8; 40];
+        ground[3..6].fill(f64::NAN);
+        ground[15..40].fill(f64::NAN);
+        let own = trace(Some(&ground), Some(&wheels));
+        let stands_in = standing_in(&own).unwrap();
+        assert!(!stands_in[4] && stands_in[15] && stands_in[39] && !stands_in[14]);
+        let made = with_stand_in(&own, &stands_in).unwrap();
+        let speed = made.get(OVER_GROUND).unwrap();
+        assert!(speed[4].is_nan() && speed[14] == 1.8 && speed[15] == 2.0);
+    }
+}

@@ -1,0 +1,113 @@
+//! Runs that lack a channel, and balances from channels that are not powers or forces themselves.
+
+use super::setting::{found, named, scenario};
+use headland_calibrate::statistics::Draws;
+use headland_diagnose::{Diagnosed, Options};
+use headland_recording::{RecordedRun, Recording};
+use headland_scenario::Scenario;
+use headland_sim::simulate;
+use headland_trace::{Origin, Trace};
+use std::path::{Path, PathBuf};
+
+/// The five drives with these channels, each sample changed as is said: name, sample, a draw of noise.
+fn recorded(effects: &str, channels: &[&str], sensor: impl Fn(&str, f64, f64) -> f64) -> Recording {
+    let registry = headland_stock::registry();
+    let text = scenario(0.069, effects, "");
+    let scenario = Scenario::of_text("truth.ron", &text, Path::new(""), &registry).unwrap();
+    let runs = scenario.runs.iter().enumerate().map(|(number, spec)| {
+        let scenario = scenario.run(spec, &registry).unwrap();
+        let model = scenario.model(&registry).unwrap();
+        let outcome = simulate(&model, scenario.cycle.as_ref().unwrap()).unwrap();
+        let mut draws = Draws::new(23, number as u64);
+        let mut trace = Trace::new(outcome.trace.time_s().to_vec()).unwrap();
+        for name in channels {
+            let values = outcome.trace.get(name).unwrap();
+            let values = values.iter().map(|value| sensor(name, *value, draws.normal())).collect();
+            trace.push(*name, values, Origin::Measured).unwrap();
+        }
+        RecordedRun {
+            id: spec.id.clone(),
+            trace,
+            path: Some("lane".to_owned()),
+            reversed: false,
+            held_out: number == 4,
+            known: Vec::new(),
+            sensors: Vec::new(),
+        }
+    });
+    Recording {
+        about: "simulated".to_owned(),
+        path: PathBuf::from("recording.ron"),
+        runs: runs.collect(),
+        known: Vec::new(),
+        notices: Vec::new(),
+    }
+}
+
+fn noted(found: &Diagnosed, what: &str) -> bool {
+    found.diagnosis.notes.iter().any(|note| note.contains(what))
+}
+
+#[test]
+fn slip_is_told_along_a_run_whose_speed_over_ground_nobody_recorded() {
+    let channels = ["speed_m_s", "wheel_speed_m_s", "tractive_force_n", "heading_rad"];
+    let noisy = |name: &str, value: f64, noise: f64| match name {
+        "speed_m_s" | "wheel_speed_m_s" => value + 0.01 * noise,
+        _ => value,
+    };
+    let mut recording = recorded("wheel_slip(coefficient: 0.5)", &channels, noisy);
+    let ground = recording.runs[1].trace.remove("speed_m_s").unwrap().values;
+    let wheels = recording.runs[1].trace.get("wheel_speed_m_s").unwrap().to_vec();
+    let found = found(&recording, &Options::default()).unwrap();
+    assert!(named(&found, "wheel_slip"), "{:?}", found.diagnosis.answer);
+    assert!(noted(&found, "In r1 no speed over ground was recorded"), "{:?}", found.diagnosis.notes);
+    let along = found.effects.iter().find(|run| run.id == "r1").unwrap();
+    let slip = along.trace.get("wheel_slip_m_s").unwrap();
+    let told = |index: usize| (wheels[index] - slip[index].abs()) / ground[index] - 1.0;
+    let driven: Vec<f64> =
+        (0..slip.len()).filter(|index| ground[*index] > 2.0).map(|index| told(index).abs()).collect();
+    let mean = driven.iter().sum::<f64>() / driven.len() as f64;
+    assert!(mean < 0.01, "{mean}");
+}
+
+#[test]
+fn a_run_that_no_balance_can_use_is_left_out_and_said() {
+    let mut recording = super::recorded(0.07, "");
+    for name in ["tractive_force_n", "coasting"] {
+        recording.runs[2].trace.remove(name);
+    }
+    let found = found(&recording, &Options::default()).unwrap();
+    assert!(
+        noted(&found, "In r2 nothing was recorded that a balance could use"),
+        "{:?}",
+        found.diagnosis.notes
+    );
+    assert!(!found.diagnosis.fit.fitted.runs.contains(&"r2".to_owned()));
+    assert!(found.effects.iter().any(|run| run.id == "r2"));
+}
+
+/// 40 kW for half a minute of 432 MJ, in steps of 4.3 kJ.
+#[test]
+fn a_consumer_is_found_by_the_state_of_charge_alone() {
+    const STEP: f64 = 1e-5;
+    let channels = ["speed_m_s", "heading_rad", "position_m", "state_of_charge"];
+    let sensed = |name: &str, value: f64, noise: f64| match name {
+        "speed_m_s" => value + 0.01 * noise,
+        "state_of_charge" => STEP * (value / STEP).floor(),
+        _ => value,
+    };
+    let recording = recorded("auxiliary_power(power_w: 40000.0)", &channels, sensed);
+    let found = found(&recording, &Options::default()).unwrap();
+    assert!(named(&found, "auxiliary_power"), "{}", found.diagnosis.answer);
+    let finding = &found.diagnosis.findings[0];
+    let balance = serde_json::to_value(finding).unwrap()["balance"].clone();
+    assert_eq!(balance, "battery");
+    // A charge that changes a few times in a run says nothing of powers.
+    let coarse = |name: &str, value: f64, noise: f64| match name {
+        "state_of_charge" => 200.0 * STEP * (value / STEP / 200.0).floor(),
+        _ => sensed(name, value, noise),
+    };
+    let recording = recorded("auxiliary_power(power_w: 40000.0)", &channels, coarse);
+    let refused = super::found(&recording, &Options::default()).unwrap_err().to_string();
+    assert!(refused.contains("no balance can be made"), "{refused}");
+}

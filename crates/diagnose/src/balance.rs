@@ -129,7 +129,7 @@ const LASTING_S: f64 = 5.0;
 /// Rows of a balance of powers at most: more only take longer.
 const MOST_ROWS: f64 = 16_000.0;
 /// Rows of a balance of forces at most: a drive in a town is braked every few seconds, and long blocks fit nowhere between.
-const MOST_ROWS_OF_MOTION: f64 = 20_000.0;
+const MOST_ROWS_OF_MOTION: f64 = 18_000.0;
 /// Lower heating value that turns fuel into watts in residuals [J/kg]: diesel, EN 590; a scale only.
 pub const FUEL_J_KG: f64 = 42.8e6;
 

@@ -86,11 +86,15 @@ mod tests {
     /// What is no number: a file, a name, a choice.
     const WORDS: [&str; 3] = ["path", "name", "true or false"];
 
+    fn wordy(unit: &str) -> bool {
+        WORDS.contains(&unit) || unit.contains(['(', '|'])
+    }
+
     /// A unit, words, and a range that the bound allows; what is no number, and points, have no range.
     fn complete(name: &str, parameter: &Parameter) {
         let Parameter { unit, about, bound, plausible, default, .. } = *parameter;
         assert!(!unit.is_empty() && !about.is_empty(), "{name}: {parameter:?}");
-        let numbers = !WORDS.contains(&unit) && !unit.contains('(');
+        let numbers = !wordy(unit);
         assert_eq!(plausible.is_some(), numbers, "{name}: {parameter:?}");
         if let Some((low, high)) = plausible {
             assert!(low < high && bound.holds(low) && bound.holds(high), "{name}: {parameter:?}");
@@ -107,7 +111,7 @@ mod tests {
         for card in Kind::ALL.into_iter().flat_map(|kind| registry.cards(kind)) {
             for parameter in card.parameters {
                 let unit = parameter.unit.trim_start_matches('[').trim_end_matches(']');
-                if unit == "1" || WORDS.contains(&unit) || unit.contains('(') {
+                if unit == "1" || wordy(unit) {
                     assert!(
                         headland_units::unit_of_name(parameter.name).is_none(),
                         "{}: {parameter:?}",

@@ -21,6 +21,9 @@ pub fn sorted(values: &[f64]) -> Vec<f64> {
     sorted
 }
 
+/// From the median of magnitudes to a standard deviation, for a normal distribution: 1/Φ⁻¹(¾).
+pub const NORMAL_OF_MEDIAN: f64 = 1.4826;
+
 /// Median; NaN where empty.
 pub fn median(values: &[f64]) -> f64 {
     quantile_of_sorted(&sorted(values), 0.5)

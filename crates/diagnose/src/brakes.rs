@@ -10,7 +10,7 @@ use crate::Case;
 use crate::events::{BRAKED_M_S2, Event};
 use crate::recorded::{Recorded, SLOWEST_M_S};
 use crate::said::Said;
-use headland_calibrate::statistics::{quantile_of_sorted, sorted};
+use headland_calibrate::statistics::{NORMAL_OF_MEDIAN, quantile_of_sorted, sorted};
 use headland_units::constants::STANDARD_GRAVITY_M_S2;
 
 /// What is averaged before it is judged [s]: a pedal is not pressed for less.
@@ -27,8 +27,6 @@ const RESISTANCES: f64 = 1.0;
 const IDLE: f64 = 0.25;
 /// A stretch goes on while what is left over is more than this share of its greatest.
 const FADED: f64 = 0.15;
-/// From the median absolute deviation to a standard deviation, for a normal distribution.
-const NORMAL: f64 = 1.4826;
 /// Fewer samples tell nothing of what is usual.
 const FEWEST: usize = 50;
 
@@ -59,7 +57,7 @@ pub fn brakes(case: &Case, sound: &[Vec<bool>]) -> Vec<Event> {
     }
     let middle = quantile_of_sorted(&all, 0.5);
     let deviations = sorted(&all.iter().map(|value| (value - middle).abs()).collect::<Vec<_>>());
-    let sd_n = NORMAL * quantile_of_sorted(&deviations, 0.5);
+    let sd_n = NORMAL_OF_MEDIAN * quantile_of_sorted(&deviations, 0.5);
     let usual_n = (SIGMAS * sd_n).max(DRIVEN * quantile_of_sorted(&driven, 0.98)).max(0.0);
     let of_run = |(number, excess): (usize, &Option<Vec<f64>>)| {
         let excess = excess.as_deref().unwrap_or(&[]);

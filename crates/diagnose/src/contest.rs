@@ -2,14 +2,14 @@
 
 use crate::balance::Kind;
 use crate::catalogue::Form;
-use crate::gram::{Column, Reduced, Whitened};
+use crate::gram::{Reduced, Whitened};
 use crate::jumps::Jumps;
 use crate::noise::{Noise, Noises};
 use crate::profile::{COARSE, Spread};
 use crate::search::rank;
-use crate::state::{Part, Stand, State};
+use crate::state::{Chosen, Part, Stand, State};
 use crate::trial::Trial;
-use headland_calibrate::statistics::median;
+use headland_calibrate::statistics::{NORMAL_OF_MEDIAN, median};
 use rayon::prelude::*;
 
 /// A set with one cause more.
@@ -156,8 +156,6 @@ impl State<'_> {
 
     /// The noise that neighbouring rows show of what a set leaves, by the median of their second differences.
     pub fn quiet(&self, stand: &Stand) -> Noises {
-        /// From the median of magnitudes to a standard deviation, for a normal distribution.
-        const NORMAL: f64 = 1.4826;
         /// Rows that share no block lie so far apart.
         const APART: usize = 2;
         /// Variance of a second difference over that of a row.
@@ -174,7 +172,7 @@ impl State<'_> {
             if differences.is_empty() {
                 return *noise;
             }
-            let variance = (NORMAL * median(&differences)).powi(2) / SECOND;
+            let variance = (NORMAL_OF_MEDIAN * median(&differences)).powi(2) / SECOND;
             if variance > 0.0 && variance < noise.sensor + noise.process {
                 Noise { sensor: variance, process: 0.0, persistence: 0.0, ..*noise }
             } else {
@@ -199,11 +197,7 @@ impl State<'_> {
         let cause = self.cause(&part.trial);
         let mut parts = stand.parts.clone();
         parts.push(part.clone());
-        let used = self.columns(&parts);
-        let columns: Vec<&Column> = used.iter().map(|column| &self.pool.columns[*column]).collect();
-        let all_sd = self.sd();
-        let sd: Vec<f64> = used.iter().map(|column| all_sd[*column]).collect();
-        let places: Vec<usize> = (0..used.len()).collect();
+        let Chosen { columns, sd, places, .. } = self.chosen(&parts);
         let chunks = &self.system.chunks;
         let whitened = Whitened::new(chunks, &self.system.residual, &columns, noises)?;
         let profile = self.profile(&part.trial);

@@ -6,7 +6,7 @@
 
 use crate::gram::{Column, Whitened};
 use crate::profile::Widths;
-use crate::state::{Part, Stand, State};
+use crate::state::{Chosen, Part, Stand, State};
 use nalgebra::DVector;
 use rayon::prelude::*;
 
@@ -28,11 +28,7 @@ impl State<'_> {
 
     /// Sum of the squares of what is left, whitened, of runs that were each predicted by the others.
     fn deviance(&self, parts: &[Part], stand: &Stand, fitted: &[usize]) -> Option<f64> {
-        let used = self.columns(parts);
-        let columns: Vec<&Column> = used.iter().map(|column| &self.pool.columns[*column]).collect();
-        let all_sd = self.sd();
-        let sd: Vec<f64> = used.iter().map(|column| all_sd[*column]).collect();
-        let places: Vec<usize> = (0..used.len()).collect();
+        let Chosen { columns, sd, places, .. } = self.chosen(parts);
         let chunks = &self.system.chunks;
         let whitened = Whitened::new(chunks, &self.system.residual, &columns, &stand.noises)?;
         let profiles = self.profiles(parts);

@@ -37,6 +37,18 @@ pub struct Stand {
     pub functions: Vec<Option<Function>>,
 }
 
+/// The columns that a set of causes uses.
+pub struct Chosen<'a> {
+    /// Which they are.
+    pub used: Vec<usize>,
+    /// What each does to the rows.
+    pub columns: Vec<&'a Column>,
+    /// Prior standard deviation of each.
+    pub sd: Vec<f64>,
+    /// Their places among themselves: all of them.
+    pub places: Vec<usize>,
+}
+
 /// What all sets are judged by.
 pub struct State<'a> {
     pub case: &'a Case<'a>,
@@ -73,6 +85,17 @@ impl<'a> State<'a> {
         let mut used: Vec<usize> = (0..self.pool.nuisance).collect();
         used.extend(parts.iter().flat_map(|part| part.trial.columns.iter().copied()));
         used
+    }
+
+    /// The same with all that an estimate by them takes.
+    pub fn chosen(&self, parts: &[Part]) -> Chosen<'a> {
+        let (used, all_sd) = (self.columns(parts), self.sd());
+        Chosen {
+            columns: used.iter().map(|column| &self.pool.columns[*column]).collect(),
+            sd: used.iter().map(|column| all_sd[*column]).collect(),
+            places: (0..used.len()).collect(),
+            used,
+        }
     }
 
     /// Prior standard deviation of every column, for estimates.
@@ -205,11 +228,7 @@ impl<'a> State<'a> {
 
     /// ln p of the recordings with a set of causes at a noise, and the values of all columns in use.
     pub fn weighed(&self, parts: &[Part], noises: &Noises) -> Option<(f64, DVector<f64>)> {
-        let used = self.columns(parts);
-        let columns: Vec<&Column> = used.iter().map(|column| &self.pool.columns[*column]).collect();
-        let all_sd = self.sd();
-        let sd: Vec<f64> = used.iter().map(|column| all_sd[*column]).collect();
-        let places: Vec<usize> = (0..used.len()).collect();
+        let Chosen { used, columns, sd, places } = self.chosen(parts);
         let whitened = Whitened::new(&self.system.chunks, &self.system.residual, &columns, noises)?;
         let reduced = self.without_functions(&whitened, &self.profiles(parts), self.fit)?;
         let estimate = reduced.estimate(&places, &sd)?;
@@ -227,11 +246,7 @@ impl<'a> State<'a> {
         const SETTLED_ASTRAY: f64 = 1.0;
         let (rounds, settled) =
             if start.tails.is_some() { (ROUNDS_ASTRAY, SETTLED_ASTRAY) } else { (ROUNDS, SETTLED) };
-        let used = self.columns(parts);
-        let columns: Vec<&Column> = used.iter().map(|column| &self.pool.columns[*column]).collect();
-        let all_sd = self.sd();
-        let sd: Vec<f64> = used.iter().map(|column| all_sd[*column]).collect();
-        let places: Vec<usize> = (0..used.len()).collect();
+        let Chosen { used, columns, sd, places } = self.chosen(parts);
         let mut parts = parts.to_vec();
         let mut profiles = self.profiles(&parts);
         let chunks = &self.system.chunks;

@@ -143,6 +143,17 @@ impl Asked<'_> {
         if self.direction == 0.0 { 1.0 } else { self.direction }
     }
 
+    /// What the brakes take [N]: what a driver who moves gets more than was wanted, and everything at rest.
+    #[inline(always)]
+    pub fn brake_n(&self, more_n: impl FnOnce() -> f64) -> f64 {
+        match self.command {
+            Command::Accelerate(_) | Command::Push(_) if self.direction != 0.0 => more_n().max(0.0),
+            // A driver who wants to stand still keeps a foot on the brake.
+            Command::Accelerate(wanted) | Command::Push(wanted) if wanted <= 0.0 => f64::INFINITY,
+            _ => 0.0,
+        }
+    }
+
     /// The direction in which resistances act, and the acceleration [m/s²].
     ///
     /// Motion takes every resistance with it; at rest they only hold against what pushes.

@@ -254,15 +254,10 @@ impl Model {
         demand.speed_m_s = rolling_m_s / (1.0 - slip);
         let own = asked.layout.driveline.clone();
         let delivery = self.driveline.deliver(&demand, &asked.states[own.clone()], &mut rates[own]);
-        let brake_n = match asked.command {
-            Command::Accelerate(_) | Command::Push(_) if asked.direction != 0.0 => {
-                let short_n = (delivery.force_n - wanted_n) * asked.direction;
-                (short_n - lost_n(delivery.force_n) + lost_n(wanted_n)).max(0.0)
-            }
-            // A driver who wants to stand still keeps a foot on the brake.
-            Command::Accelerate(wanted) | Command::Push(wanted) if wanted <= 0.0 => f64::INFINITY,
-            _ => 0.0,
-        };
+        let brake_n = asked.brake_n(|| {
+            let more_n = (delivery.force_n - wanted_n) * asked.direction;
+            more_n - lost_n(delivery.force_n) + lost_n(wanted_n)
+        });
         let resisting_n = held_n + lost_n(delivery.force_n) + brake_n;
         let (way, acceleration_m_s2) = asked.moves(delivery.force_n + asked.free_n, resisting_n);
         Rolled {

@@ -53,15 +53,10 @@ impl Model {
             delivery.source_power_w += (force_n - delivery.force_n) * demand.speed_m_s;
             delivery.force_n = force_n;
         }
-        let brake_n = match command {
-            Command::Accelerate(_) | Command::Push(_) if direction != 0.0 => {
-                let short_n = (delivery.force_n - wanted_n) * direction;
-                (short_n - lost_n(delivery.force_n) + lost_n(wanted_n)).max(0.0)
-            }
-            // A driver who wants to stand still keeps a foot on the brake.
-            Command::Accelerate(wanted) | Command::Push(wanted) if wanted <= 0.0 => f64::INFINITY,
-            _ => 0.0,
-        };
+        let brake_n = asked.brake_n(|| {
+            let more_n = (delivery.force_n - wanted_n) * direction;
+            more_n - lost_n(delivery.force_n) + lost_n(wanted_n)
+        });
         let driving_n = delivery.force_n + free_n;
         let resisting_n = held_n + lost_n(delivery.force_n) + brake_n;
         let (way, acceleration_m_s2) = asked.moves(driving_n, resisting_n);

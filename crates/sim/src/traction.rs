@@ -277,19 +277,14 @@ fn moved(
     // A recorded force may be more than the ground of the model gives; it moved the vehicle all the same.
     let traction_n = grip.gross_n + (force_n - grip.force_n);
     let ground_n = held_n(grip, sums);
-    let brake_n = match asked.command {
-        Command::Accelerate(_) | Command::Push(_) if asked.direction != 0.0 => {
-            let served = wanted.root.reached && force_n == wanted.force_n;
-            let more_n = match wanted.goal {
-                Goal::Net(net_n) => traction_n - lost_n(force_n) - ground_n - net_n,
-                Goal::Force(goal_n) => (force_n - lost_n(force_n)) - (goal_n - lost_n(goal_n)),
-            };
-            if served { 0.0 } else { more_n.max(0.0) }
-        }
-        // A driver who wants to stand still keeps a foot on the brake.
-        Command::Accelerate(wanted) | Command::Push(wanted) if wanted <= 0.0 => f64::INFINITY,
-        _ => 0.0,
-    };
+    let brake_n = asked.brake_n(|| {
+        let served = wanted.root.reached && force_n == wanted.force_n;
+        let more_n = match wanted.goal {
+            Goal::Net(net_n) => traction_n - lost_n(force_n) - ground_n - net_n,
+            Goal::Force(goal_n) => (force_n - lost_n(force_n)) - (goal_n - lost_n(goal_n)),
+        };
+        if served { 0.0 } else { more_n }
+    });
     let driving_n = way * traction_n + asked.free_n;
     let resisting_n = ground_n + sums.resistance_n + sums.drawbar_n + lost_n(force_n) + brake_n;
     let (way, acceleration_m_s2) = asked.moves(driving_n, resisting_n);

@@ -18,7 +18,7 @@ use headland_plugin::{
 use serde::Deserialize;
 use std::path::Path;
 
-const MOTOR: [Parameter; 12] = machine!("motor");
+const MOTOR: [Parameter; crate::motor::COUNT] = machine!("motor");
 const OWN: [Parameter; 7] = [
     parameter("gear_ratios", "[1]", "motor speed over wheel speed, lowest gear first, i")
         .must_be(Bound::Positive)

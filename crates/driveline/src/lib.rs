@@ -3,6 +3,7 @@
 mod battery_electric;
 mod electric_single_speed;
 mod engine;
+mod engine_by_power;
 mod engine_cvt;
 mod full_load;
 mod hybrid;
@@ -20,6 +21,7 @@ mod store;
 
 pub use battery_electric::BatteryElectric;
 pub use electric_single_speed::ElectricSingleSpeed;
+pub use engine_by_power::EngineByPower;
 pub use engine_cvt::EngineCvt;
 pub use hybrid::Managed;
 pub use hydromechanical_cvt::HydromechanicalCvt;
@@ -40,6 +42,7 @@ use headland_plugin::Registry;
 pub fn register(registry: &mut Registry) {
     registry.driveline::<Neutral>();
     registry.driveline::<EngineCvt>();
+    registry.driveline::<EngineByPower>();
     registry.driveline::<HydromechanicalCvt>();
     registry.driveline::<MappedCvt>();
     registry.driveline::<Powershift>();

@@ -16,7 +16,7 @@ use crate::store::{BATTERY, BatteryFile, SUPERCAPACITOR, Store, SupercapacitorFi
 use headland_plugin::{Bound, Card, Parameter, Refusal, State, parameter};
 use serde::Deserialize;
 
-const MACHINES: [Parameter; 12] = machine!("motor");
+const MACHINES: [Parameter; crate::motor::COUNT] = machine!("motor");
 const OWN: [Parameter; 1] = [parameter("motor_ratio", "1", "motor speed over engine speed, i_m")
     .must_be(Bound::Positive)
     .usually(0.5, 6.0)];

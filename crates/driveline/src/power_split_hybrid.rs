@@ -18,8 +18,8 @@ use crate::store::{BATTERY, BatteryFile, SUPERCAPACITOR, Store, SupercapacitorFi
 use headland_plugin::{Bound, Card, Parameter, Refusal, State, parameter};
 use serde::Deserialize;
 
-const MOTOR: [Parameter; 12] = machine!("motor");
-const GENERATOR: [Parameter; 12] = machine!("generator");
+const MOTOR: [Parameter; crate::motor::COUNT] = machine!("motor");
+const GENERATOR: [Parameter; crate::motor::COUNT] = machine!("generator");
 const OWN: [Parameter; 6] = [
     parameter("planetary_ratio", "1", "teeth of the ring over those of the sun, k")
         .must_be(Bound::Positive)

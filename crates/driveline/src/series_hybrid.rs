@@ -15,8 +15,8 @@ use crate::store::{BATTERY, BatteryFile, SUPERCAPACITOR, Store, SupercapacitorFi
 use headland_plugin::{Bound, Card, Parameter, Refusal, State, parameter};
 use serde::Deserialize;
 
-const MOTOR: [Parameter; 12] = machine!("motor");
-const GENERATOR: [Parameter; 12] = machine!("generator");
+const MOTOR: [Parameter; crate::motor::COUNT] = machine!("motor");
+const GENERATOR: [Parameter; crate::motor::COUNT] = machine!("generator");
 const OWN: [Parameter; 5] = [
     parameter("generator_ratio", "1", "generator speed over engine speed, i_g")
         .must_be(Bound::Positive)

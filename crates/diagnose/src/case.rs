@@ -8,12 +8,14 @@ use crate::recorded::{Recorded, recorded};
 use crate::said::{Said, said};
 use crate::search::Accepted;
 use crate::sensors::corrected;
+use crate::so_far::SoFar;
 use crate::standin::prepared;
 use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
 use headland_calibrate::study::Study;
 use headland_plugin::{Registry, closest};
 use headland_recording::Recording;
 use headland_scenario::Scenario;
+use std::sync::Arc;
 
 /// What the user wants of a diagnosis.
 #[derive(Clone, Debug, Default)]
@@ -59,6 +61,8 @@ pub(crate) struct Case<'a> {
     pub paths: Vec<Option<String>>,
     /// What the nominal model says.
     pub nominal: Vec<Said>,
+    /// What was found so far, where anything was.
+    pub so_far: Option<SoFar>,
     /// Whether each run may be fitted.
     pub fit: Vec<bool>,
     /// Whether any balance can use a run. Effects are reconstructed along the others, and nothing is learned from them.
@@ -103,6 +107,7 @@ impl<'a> Case<'a> {
             petty: Vec::new(),
             paths,
             nominal: Vec::new(),
+            so_far: None,
             fit: Vec::new(),
             bears: Vec::new(),
             chosen: false,
@@ -139,6 +144,7 @@ impl<'a> Case<'a> {
 
     /// What the nominal model says of the runs, and how it would have accelerated.
     fn suppose(&mut self) -> Result<(), DiagnoseError> {
+        self.so_far = None;
         self.nominal = self.said(self.study.scenario(), &self.study.priors())?;
         for (run, said) in self.runs.iter_mut().zip(&self.nominal) {
             run.accelerate(&said.resistance_n, &said.effective_mass_kg);
@@ -167,6 +173,11 @@ impl<'a> Case<'a> {
         said(runs, &self.kinds, |run| Ok(self.study.model_of(scenario, &runs[run].measured, values)?))
     }
 
+    /// What a scenario's model says of every run beside what was found so far.
+    pub fn said_so_far_with(&self, scenario: &Scenario, values: &[f64]) -> Result<Vec<Said>, DiagnoseError> {
+        said(&self.runs, &self.kinds, |run| self.model_so_far(scenario, run, values))
+    }
+
     /// As [`Case::said`], with one more effect, which may be another in each run, and what the balances `kinds` need.
     pub fn said_with(
         &self,
@@ -174,20 +185,36 @@ impl<'a> Case<'a> {
         values: &[f64],
         kinds: &[Kind],
     ) -> Result<Vec<Said>, DiagnoseError> {
-        let mut variants: Vec<(String, Scenario)> = Vec::new();
-        for run in &self.runs {
-            let text = text(run);
-            if !variants.iter().any(|(known, _)| *known == text) {
-                let scenario = self.study.scenario().with_effect(&text, self.registry)?;
-                variants.push((text, scenario));
-            }
-        }
+        let scenarios = self.variants(text)?;
         said(&self.runs, kinds, |run| {
-            let text = text(&self.runs[run]);
-            let scenario = variants.iter().find(|(known, _)| *known == text).map(|(_, scenario)| scenario);
-            let scenario = scenario.unwrap_or(self.study.scenario());
-            Ok(self.study.model_of(scenario, &self.runs[run].measured, values)?)
+            Ok(self.study.model_of(&scenarios[run], &self.runs[run].measured, values)?)
         })
+    }
+
+    /// The same beside what was found so far.
+    pub fn said_beside(
+        &self,
+        text: &(impl Fn(&Recorded) -> String + Sync),
+        values: &[f64],
+        kinds: &[Kind],
+    ) -> Result<Vec<Said>, DiagnoseError> {
+        let scenarios = self.variants(text)?;
+        said(&self.runs, kinds, |run| self.model_so_far(&scenarios[run], run, values))
+    }
+
+    /// The scenario of every run with one more effect.
+    fn variants(&self, text: &impl Fn(&Recorded) -> String) -> Result<Vec<Arc<Scenario>>, DiagnoseError> {
+        let mut known: Vec<(String, Arc<Scenario>)> = Vec::new();
+        let one = |run: &Recorded| {
+            let text = text(run);
+            if let Some((_, scenario)) = known.iter().find(|(own, _)| *own == text) {
+                return Ok(Arc::clone(scenario));
+            }
+            let scenario = Arc::new(self.study.scenario().with_effect(&text, self.registry)?);
+            known.push((text, Arc::clone(&scenario)));
+            Ok(scenario)
+        };
+        self.runs.iter().map(one).collect()
     }
 
     /// The rows of every balance, of samples that are `usable`.

@@ -570,9 +570,14 @@ pub fn causes(around: &Around) -> Vec<Cause> {
         cause(
             "drawbar_load",
             MOTION,
-            vec![pull, shape("from_s", "s"), shape("to_s", "s")],
-            "F = F₀ between two times",
-            &["time_s"],
+            vec![
+                pull,
+                linear("linear_n_s_m", "N s/m", 0.004 * weight),
+                shape("from_s", "s"),
+                shape("to_s", "s"),
+            ],
+            "F = D₀ + D₁ v between two times",
+            &["time_s", "speed_m_s"],
             "an implement that is down for a while",
             "repeat without it, or log the drawbar force",
         )

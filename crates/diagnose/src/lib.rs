@@ -11,6 +11,7 @@
 
 mod balance;
 mod band;
+mod bend;
 mod brakes;
 mod case;
 mod catalogue;
@@ -39,6 +40,7 @@ mod said;
 mod search;
 mod sensors;
 mod sharpen;
+mod so_far;
 mod standin;
 mod state;
 mod straying;
@@ -48,6 +50,7 @@ mod trial;
 mod unlisted;
 mod voltage;
 mod widths;
+mod withdraw;
 mod words;
 
 pub use balance::Kind;
@@ -88,18 +91,16 @@ pub fn diagnose(
     }
     let braked = if case.wanted("braking") { brakes::brakes(&case, &sound) } else { Vec::new() };
     let sound = without(&case, &sound, &braked);
-    let mut look = Look::at(&case, &sound)?;
+    let mut look = Look::at(&mut case, &sound)?;
     sensors_first(&mut case, &mut look, &sound)?;
     look.sharpen(&case)?;
-    let events = spells(&case, &mut look, &sound, &braked)?;
+    let events = spells(&mut case, &mut look, &sound, &braked)?;
     let Look { system, mut pool, found } = look;
     case.step("strange rows")?;
     let found = straying::straying(&case, &system, &pool, found);
     let found = unlisted::unlisted(&mut case, &system, &mut pool, found)?;
-    let mut refined = refine::refine(&case, &system, &mut pool, &found)?;
-    refine::spells(&case, &system, &events, &mut refined);
-    let withheld = contradiction::withhold(&case, &mut refined);
-    let proof = prove::prove(&case, &system, &refined)?;
+    let proven = withdraw::proven(&case, &system, &mut pool, found, &events)?;
+    let withdraw::Proven { found, mut refined, withheld, proof } = proven;
     let next = experiment::propose(&case, &system, &pool, &found, &refined)?;
     refined.null_space.clone_from(&next.null_space);
     let beside = report::Beside { faults: &faults, events: &events, withheld, next };
@@ -114,8 +115,20 @@ struct Look {
 }
 
 impl Look {
-    /// Looks at samples that are `usable`.
-    fn at(case: &Case, usable: &[Vec<bool>]) -> Result<Self, DiagnoseError> {
+    /// Looks at samples that are `usable`, and again with what was found as part of the model.
+    fn at(case: &mut Case, usable: &[Vec<bool>]) -> Result<Self, DiagnoseError> {
+        const ROUNDS: usize = 2;
+        let mut look = Self::once(case, usable)?;
+        for _ in 0..ROUNDS {
+            if !case.build_on(&look.pool, &look.found)? {
+                break;
+            }
+            look = Self::once(case, usable)?;
+        }
+        Ok(look)
+    }
+
+    fn once(case: &Case, usable: &[Vec<bool>]) -> Result<Self, DiagnoseError> {
         let system = case.system(usable);
         if system.kinds.is_empty() {
             return Err(DiagnoseError::NoBalance { channels: case.channels() });
@@ -131,9 +144,11 @@ impl Look {
             .ok_or_else(|| DiagnoseError::NoBalance { channels: case.channels() })
     }
 
-    /// Searches once more with shapes between the points of the grids.
+    /// Searches once more with shapes between the points of the grids, and with causes as they are at their size.
     fn sharpen(&mut self, case: &Case) -> Result<(), DiagnoseError> {
-        if sharpen::sharpen(case, &self.system, &mut self.pool, &self.found)? {
+        let finer = sharpen::sharpen(case, &self.system, &mut self.pool, &self.found)?;
+        let bent = bend::bend(case, &self.system, &mut self.pool, &self.found)?;
+        if finer || bent {
             self.found = Self::search(case, &self.system, &self.pool)?;
         }
         Ok(())
@@ -196,7 +211,7 @@ fn without(case: &Case, usable: &[Vec<bool>], events: &[events::Event]) -> Vec<V
 
 /// Spells in single runs are set aside, and what every run has in common is looked for once more without them.
 fn spells(
-    case: &Case,
+    case: &mut Case,
     look: &mut Look,
     sound: &[Vec<bool>],
     braked: &[events::Event],

@@ -9,7 +9,7 @@ use crate::refine::{Cured, Refined, said_with_all};
 use crate::said::Said;
 use crate::sensors::corrected;
 use crate::trial::for_run;
-use crate::voltage::lost_w;
+use crate::voltage::{drop_v, lost_w};
 use crate::{Case, DiagnoseError};
 use headland_scenario::Scenario;
 use headland_sim::{Replay, replay};
@@ -51,8 +51,13 @@ pub struct Proof {
     pub scenarios: Vec<(usize, String)>,
 }
 
-/// Makes the proof.
-pub fn prove(case: &Case, system: &System, refined: &Refined) -> Result<Proof, DiagnoseError> {
+/// Makes the proof, by the signal of a balance: that of what was found first, where nobody says otherwise.
+pub fn prove(
+    case: &Case,
+    system: &System,
+    refined: &Refined,
+    by: Option<Kind>,
+) -> Result<Proof, DiagnoseError> {
     case.step("proving")?;
     let mut runs = case.raw.clone();
     for (id, value) in refined.artefacts() {
@@ -66,7 +71,7 @@ pub fn prove(case: &Case, system: &System, refined: &Refined) -> Result<Proof, D
     // What a run tells of itself is no proof on it: errors are those with what the fitted runs told.
     let told = refined.causes.iter().map(|cured| reconstruct(case, system, cured, refined));
     let told = told.collect::<Result<Vec<_>, _>>()?;
-    let kind = told_by(system, refined);
+    let kind = by.unwrap_or_else(|| told_by(system, refined));
     let (errors, noise) = if kind == Kind::Motion {
         (speeds(case, &runs, refined)?, speed_noise(case))
     } else {
@@ -115,7 +120,7 @@ fn by_path(refined: &Refined) -> bool {
 }
 
 /// The balance whose signal tells before and after: that of what was found first, and else that of motion.
-fn told_by(system: &System, refined: &Refined) -> Kind {
+pub fn told_by(system: &System, refined: &Refined) -> Kind {
     let found = refined.causes.first().map(|cured| system.kinds[cured.accepted.balance]);
     let motion = system.has(Kind::Motion).then_some(Kind::Motion);
     found.or(motion).or(system.kinds.first().copied()).unwrap_or(Kind::Motion)
@@ -136,7 +141,7 @@ pub fn improved(case: &Case, refined: &Refined, run: usize) -> Result<Scenario, 
 }
 
 /// A cause as the scenario of a run writes it; none of a sensor's.
-fn text(case: &Case, cured: &Cured, run: usize) -> Option<String> {
+pub fn text(case: &Case, cured: &Cured, run: usize) -> Option<String> {
     if cured.cause.class == Class::Artefact {
         return None;
     }
@@ -374,6 +379,10 @@ fn rows(
                     values.iter().map(|value| -value / mass(run).unwrap_or(f64::INFINITY)).collect()
                 };
                 effect.runs.iter().enumerate().map(of_run).collect()
+            }
+            // More resistance is told as the power that it loses, and read by the voltage.
+            (true, _) if kind == Kind::Voltage => {
+                case.runs.iter().zip(&effect.runs).map(|(run, lost)| drop_v(run, lost)).collect()
             }
             (true, _) => effect.runs.clone(),
         });

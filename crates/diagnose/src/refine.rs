@@ -162,6 +162,12 @@ fn widest(value: f64, one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
     if half(one) >= half(other) { one } else { [value - half(other), value + half(other)] }
 }
 
+/// The linear estimate, shapes taken as known.
+pub fn plain(case: &Case, pool: &Pool, found: &Found) -> Refined {
+    let of = |accepted: &Accepted| vec![0.0; case.causes[accepted.trial.cause].terms.len()];
+    linear(case, pool, found, &found.accepted.iter().map(of).collect::<Vec<Widths>>())
+}
+
 /// The linear estimate.
 fn linear(case: &Case, pool: &Pool, found: &Found, widths: &[Widths]) -> Refined {
     let interval = |position: usize, value: f64| {

@@ -91,8 +91,9 @@ pub const PER_CAUSE: f64 = 3.0;
 pub const NO_OTHER_RUN: f64 = 20.0;
 /// A growth of ln p within this of the best one does not tell the two apart: odds of one to twenty.
 const TOLERANCE: f64 = 3.0;
-/// No growth below this counts, whatever chance can do.
-pub const LEAST_GAIN: f64 = 4.0;
+/// No growth below this counts, whatever chance can do: odds of a thousand to one, because no model of a vehicle is exact and
+/// chance is only that of its noise.
+pub const LEAST_GAIN: f64 = 7.0;
 /// Draws of the null distribution.
 const DRAWS: u64 = 300;
 /// An effect has to be at least this share of a row's noise, as root mean square.

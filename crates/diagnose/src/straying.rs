@@ -49,15 +49,16 @@ impl State<'_> {
         if best.parts.iter().all(|part| part.spread.is_none()) {
             return None;
         }
-        let strays = |stand: &Stand| {
+        let with_tails = |stand: &Stand| {
             let noises = Noises { tails: None, ..stand.noises.clone() };
             let tails = Tails::of(&self.system.chunks, &noises, &stand.left);
             Noises { tails, ..noises }
         };
-        let mut current = self.settle(&best.parts, &strays(best))?;
-        if current.score < best.score + LEAST_GAIN {
-            return None;
-        }
+        let astray = self.settle(&best.parts, &with_tails(best))?;
+        // Where no rows stray, functions may still be finer than they were looked for.
+        let tailed = astray.score >= best.score + LEAST_GAIN;
+        let mut current = if tailed { astray } else { best.clone() };
+        let strays = |stand: &Stand| if tailed { with_tails(stand) } else { stand.noises.clone() };
         // What lasts is no noise where a function can follow it.
         current.noises.brief = (0..self.system.kinds.len())
             .map(|balance| {
@@ -80,7 +81,8 @@ impl State<'_> {
             last
         };
         let all: Vec<Stand> = starts.iter().filter_map(of).collect();
-        all.into_iter().max_by(|one, other| one.score.total_cmp(&other.score)).or(Some(current))
+        let finest = all.into_iter().max_by(|one, other| one.score.total_cmp(&other.score)).or(Some(current));
+        finest.filter(|stand| tailed || stand.score >= best.score + LEAST_GAIN)
     }
 
     /// A set whose functions are spread anew, as suits them best at a noise.

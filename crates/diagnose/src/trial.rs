@@ -71,7 +71,7 @@ pub fn nuisance(case: &Case, system: &System) -> Result<Pool, DiagnoseError> {
         let mut values = priors.clone();
         values[index] = (values[index] + step).clamp(parameter.bounds.0, parameter.bounds.1);
         let step = values[index] - priors[index];
-        let after = case.said(case.study.scenario(), &values)?;
+        let after = case.said_so_far_with(case.study.scenario(), &values)?;
         pool.columns.push(system.column(|kind| difference(case, kind, &after, step)));
         pool.sd.push(sd);
     }
@@ -125,23 +125,33 @@ pub fn add_trial(
             system.silence(&mut column, |kind| kind.among(cause.balances));
             column
         } else {
-            let text = |run: &Recorded| signature(cause, term, step, shape, run);
-            let kinds: Vec<Kind> =
-                system.kinds.iter().copied().filter(|kind| tried_on(cause, *kind, system)).collect();
-            let after = case.said_with(&text, &case.study.priors(), &kinds)?;
-            system.column(|kind| {
-                if !kinds.contains(&kind) {
-                    return silent(case);
-                }
-                let mut samples = difference(case, kind, &after, step);
-                mute(cause, kind, system, &mut samples);
-                samples
-            })
+            effect(case, system, cause, step, &|run| signature(cause, term, step, shape, run))?
         };
         found.push(Part { column, scale: part.scale, term });
     }
     add(system, pool, number, shape, found);
     Ok(())
+}
+
+/// What an effect does to the rows, per step of it.
+pub fn effect(
+    case: &Case,
+    system: &System,
+    cause: &Cause,
+    step: f64,
+    text: &(impl Fn(&Recorded) -> String + Sync),
+) -> Result<Column, DiagnoseError> {
+    let kinds: Vec<Kind> =
+        system.kinds.iter().copied().filter(|kind| tried_on(cause, *kind, system)).collect();
+    let after = case.said_beside(text, &case.study.priors(), &kinds)?;
+    Ok(system.column(|kind| {
+        if !kinds.contains(&kind) {
+            return silent(case);
+        }
+        let mut samples = difference(case, kind, &after, step);
+        mute(cause, kind, system, &mut samples);
+        samples
+    }))
 }
 
 /// Nothing, in every run.
@@ -229,7 +239,7 @@ fn difference(case: &Case, kind: Kind, after: &[Said], step: f64) -> Vec<Vec<f64
     let of_run = |(run, (before, after)): (&Recorded, (&Said, &Said))| {
         change(kind, run, before, after).iter().map(|value| -value / step).collect()
     };
-    case.runs.iter().zip(case.nominal.iter().zip(after)).map(of_run).collect()
+    case.runs.iter().zip(case.said_so_far().iter().zip(after)).map(of_run).collect()
 }
 
 /// The column of one term.

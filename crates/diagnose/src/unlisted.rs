@@ -104,10 +104,13 @@ fn beside(
     Ok(best.and_then(|best| concluded(&state, best, &found)).unwrap_or(found))
 }
 
-/// Whether a law only draws a map: several shapes along the path, which softer ground or slopes are by their definition.
+/// Whether a law only draws a map: several shapes along the path, which softer ground or slopes are by their definition, and
+/// at most as many others beside.
 fn is_map(law: &Law) -> bool {
-    let others = headland_symbolic::known_variables().filter(|(name, _)| *name != "x");
-    law.terms > 1 && law.names("x") && !others.into_iter().any(|(name, _)| law.names(name))
+    let only_x = |term: &[&str]| !term.is_empty() && term.iter().all(|name| *name == "x");
+    let terms = law.variables_of_terms();
+    let along = terms.iter().filter(|term| only_x(term)).count();
+    along > 1 && 2 * along >= terms.len() && terms.iter().all(|term| term.contains(&"x"))
 }
 
 /// How much better than what was found a set with a law has to be.

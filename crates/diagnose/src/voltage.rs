@@ -62,6 +62,19 @@ pub fn lost_w(run: &Recorded, before: &Said, after: &Said) -> Vec<f64> {
     current.iter().map(|current| more_ohm * current * current).collect()
 }
 
+/// What a resistance that loses this power takes from the fast part of the voltage, the other way round as residuals have
+/// it [V].
+pub fn drop_v(run: &Recorded, lost_w: &[f64]) -> Vec<f64> {
+    let trace = &run.measured.trace;
+    drop_of(trace.time_s(), trace.get("battery_current_a").unwrap_or(&[]), lost_w)
+}
+
+fn drop_of(time_s: &[f64], current_a: &[f64], lost_w: &[f64]) -> Vec<f64> {
+    let drop = |(lost, current): (&f64, &f64)| if *current == 0.0 { 0.0 } else { -lost / current };
+    let drops: Vec<f64> = lost_w.iter().zip(current_a).map(drop).collect();
+    fast(time_s, &drops)
+}
+
 /// What so much more resistance in the model does to the residual [V].
 pub fn change_v(run: &Recorded, more_ohm: f64) -> Vec<f64> {
     let trace = &run.measured.trace;
@@ -84,6 +97,17 @@ mod tests {
             .map(|(index, value)| value - if index == 1000 { 3.0 } else { 0.0 })
             .collect();
         assert!((fast(&time_s, &pulsed)[1000] + 3.0).abs() < 0.01);
+    }
+
+    /// What a resistance loses and what it does to the voltage tell the same resistance.
+    #[test]
+    fn power_lost_and_voltage_dropped_belong_together() {
+        let time_s: Vec<f64> = (0..2000).map(|index| 0.1 * f64::from(index)).collect();
+        let current: Vec<f64> = time_s.iter().map(|time| 40.0 * (0.7 * time).sin() + 10.0).collect();
+        let lost: Vec<f64> = current.iter().map(|current| 0.05 * current * current).collect();
+        for (drop, current) in drop_of(&time_s, &current, &lost).iter().zip(fast(&time_s, &current)) {
+            assert!((drop + 0.05 * current).abs() < 1e-9);
+        }
     }
 
     #[test]

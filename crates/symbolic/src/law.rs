@@ -1,5 +1,6 @@
 //! A law as text that the effect `expression` reads, and the numbers that its constants stand for.
 
+use crate::known_variables;
 use crate::polish::Polished;
 use crate::problem::Bench;
 use crate::shape::{Free, Shape};
@@ -55,9 +56,40 @@ impl Law {
 
     /// Names of the variables that stand in it, as far as they are known to formulas.
     pub fn names(&self, name: &str) -> bool {
-        let letter = |c: char| c.is_alphanumeric() || c == '_';
-        self.text.split(|c: char| !letter(c)).any(|word| word == name)
+        has_word(&self.text, name)
     }
+
+    /// Names of the variables of each of its terms.
+    pub fn variables_of_terms(&self) -> Vec<Vec<&'static str>> {
+        let of = |term: &str| -> Vec<&'static str> {
+            known_variables().map(|(name, _)| name).filter(|name| has_word(term, name)).collect()
+        };
+        terms(&self.text).into_iter().map(of).collect()
+    }
+}
+
+fn has_word(text: &str, word: &str) -> bool {
+    let letter = |c: char| c.is_alphanumeric() || c == '_';
+    text.split(|c: char| !letter(c)).any(|own| own == word)
+}
+
+/// The terms of a formula: what is added outside of brackets.
+fn terms(text: &str) -> Vec<&str> {
+    let (mut depth, mut from) = (0usize, 0);
+    let mut all = Vec::new();
+    for (at, letter) in text.char_indices() {
+        match letter {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            '+' if depth == 0 => {
+                all.push(text[from..at].trim());
+                from = at + 1;
+            }
+            _ => {}
+        }
+    }
+    all.push(text[from..].trim());
+    all
 }
 
 /// Text, constants and prediction of a law.
@@ -167,5 +199,19 @@ impl Writer {
         let unit = if ending == "_k" { "K" } else { known.unit };
         let name = format!("{}{number}{ending}", known.name);
         self.constant(&name, (value, sd.unwrap_or(0.0)), sd.is_some(), unit)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_added_within_a_bracket_is_no_term() {
+        let text = "a1_n * sin(6.28 * x / x1_m + phase1_rad) + a2_n * (abs(v) / v1_m_s)^0.5";
+        assert_eq!(terms(text), ["a1_n * sin(6.28 * x / x1_m + phase1_rad)", "a2_n * (abs(v) / v1_m_s)^0.5"]);
+        assert!(
+            has_word(text, "v") && has_word(text, "x") && !has_word(text, "t") && !has_word(text, "phase1")
+        );
     }
 }

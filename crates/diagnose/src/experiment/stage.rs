@@ -89,6 +89,7 @@ impl<'a> Stage<'a> {
             corrections: case.corrections.clone(),
             petty: case.petty.clone(),
             nominal: Vec::new(),
+            so_far: None,
             chosen: false,
             paths: case.paths.clone(),
             causes: case.causes.clone(),

@@ -115,7 +115,7 @@ pub fn inconclusive(
     });
     let refined = Refined { causes: Vec::new(), free: free.collect(), null_space: Vec::new() };
     // A recording that cannot even drive the model is shown as it is.
-    let proof = prove(case, system, &refined).unwrap_or_else(|_| Proof {
+    let proof = prove(case, system, &refined, None).unwrap_or_else(|_| Proof {
         signal: "speed_m_s",
         fitted: Errors { before: f64::NAN, after: f64::NAN },
         held_out: None,

@@ -243,6 +243,11 @@ fn parameters(cured: &Cured) -> Vec<ParameterReport> {
                 one("from_rad", from, [from - HALF_95 * across, from + HALF_95 * across], "rad"),
             ]
         }
+        // As `recording.ron` has it: what a channel shows over what it ought to.
+        "speed_scale" | "force_scale" => {
+            let Some((value, ci)) = cured.values.first() else { return Vec::new() };
+            vec![one("scale", 1.0 + value, [1.0 + ci[0], 1.0 + ci[1]], "1")]
+        }
         "cornering_drag" => {
             let Some((value, ci)) = cured.values.first() else { return Vec::new() };
             let stiffness = |compliance: f64| 1.0 / compliance.max(1e-12);

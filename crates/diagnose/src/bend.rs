@@ -1,0 +1,168 @@
+//! Causes that are not in proportion to their parameters: a wind of 8 m/s pushes more than twice as hard as one of 4 m/s.
+//! Their columns are made once more at the size that was found, so that what they say there is exact.
+//!
+//! The effect of several parameters is divided among them as if each had been added first and last in turn, half and half,
+//! which for two of them gives the whole effect without a rest.
+//! Source: L. S. Shapley, in *Contributions to the Theory of Games* II (1953), 307 (the division).
+
+use crate::catalogue::{Cause, Form};
+use crate::gram::Column;
+use crate::search::Found;
+use crate::state::{Part, State};
+use crate::trial::{Pool, Trial, effect, for_run};
+use crate::{Case, DiagnoseError, System};
+
+/// So many causes get the chance.
+const MOST: usize = 3;
+/// Those that bring at least this share of what the best one brings.
+const CLOSE: f64 = 0.5;
+/// A cause whose columns miss its effect by less than this share of it is in proportion.
+const STRAIGHT: f64 = 0.02;
+/// Columns are made anew so many times: each time the size that they are made at is closer.
+const ROUNDS: usize = 4;
+
+/// Adds trials with columns made at the size that was found, of the best causes that are not in proportion. Whether there
+/// was anything to add.
+pub fn bend(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> Result<bool, DiagnoseError> {
+    let mut chosen: Vec<Trial> = Vec::new();
+    let mut consider = |trial: &Trial| {
+        let known = |own: &Trial| own.cause == trial.cause && own.terms == trial.terms;
+        let cause = &case.causes[trial.cause];
+        let able = cause.form == Form::Parameters && cause.law.is_none();
+        if able && !chosen.iter().any(known) {
+            chosen.push(trial.clone());
+        }
+    };
+    for one in &found.accepted {
+        consider(&one.trial);
+    }
+    if let Some(round) = found.tried.first() {
+        let greatest = round.causes.first().map_or(0.0, |one| one.2);
+        let close = round.causes.iter().filter(|one| one.2 > 0.0 && one.2 >= CLOSE * greatest);
+        for (cause, shape, _) in close.take(MOST) {
+            let same = |trial: &&Trial| trial.cause == *cause && trial.shape == *shape;
+            pool.trials.iter().filter(same).for_each(&mut consider);
+        }
+    }
+    let mut added = false;
+    for trial in chosen {
+        let accepted = found.accepted.iter().any(|one| one.trial.columns == trial.columns);
+        let others = found.accepted.iter().filter(|one| accepted && one.trial.columns != trial.columns);
+        let others: Vec<Part> = others
+            .filter(|one| one.function.is_none())
+            .map(|one| Part { trial: one.trial.clone(), spread: None })
+            .collect();
+        let noises = if accepted { &found.noises.1 } else { &found.noises.0 };
+        let size = |pool: &Pool, trial: &Trial| -> Option<Vec<f64>> {
+            let state = State { case, system, pool, fit: &case.fit };
+            let mut parts = others.clone();
+            parts.push(Part { trial: trial.clone(), spread: None });
+            let (_, beta) = state.weighed(&parts, noises)?;
+            let first = beta.len() - trial.columns.len();
+            Some(beta.iter().skip(first).copied().collect())
+        };
+        added |= bent(case, system, pool, &trial, &size)?;
+    }
+    Ok(added)
+}
+
+/// Adds one trial anew, if it is not in proportion.
+fn bent(
+    case: &Case,
+    system: &System,
+    pool: &mut Pool,
+    trial: &Trial,
+    size: &dyn Fn(&Pool, &Trial) -> Option<Vec<f64>>,
+) -> Result<bool, DiagnoseError> {
+    let cause = &case.causes[trial.cause];
+    let (columns, trials) = (pool.columns.len(), pool.trials.len());
+    let mut current = trial.clone();
+    for round in 0..ROUNDS {
+        let Some(values) = size(pool, &current) else { break };
+        if values
+            .iter()
+            .zip(&trial.terms)
+            .any(|(value, term)| *value == 0.0 || cause.impossible(*term, *value))
+        {
+            break;
+        }
+        let made = divided(case, system, trial, &values)?;
+        let old: Vec<&Column> = current.columns.iter().map(|column| &pool.columns[*column]).collect();
+        if missed(&made, &old, &values) < STRAIGHT {
+            break;
+        }
+        if round > 0 {
+            pool.truncate(columns, trials);
+        }
+        let scales: Vec<f64> = trial.columns.iter().map(|column| pool.sd[*column]).collect();
+        current.columns = (columns..columns + made.len()).collect();
+        pool.columns.extend(made);
+        pool.sd.extend(scales);
+        pool.trials.push(current.clone());
+    }
+    Ok(pool.trials.len() > trials)
+}
+
+/// What each parameter of a trial does at these values, per unit of it.
+fn divided(
+    case: &Case,
+    system: &System,
+    trial: &Trial,
+    values: &[f64],
+) -> Result<Vec<Column>, DiagnoseError> {
+    let cause = &case.causes[trial.cause];
+    let with = |within: &dyn Fn(usize) -> bool| -> Result<Column, DiagnoseError> {
+        let all = placed(cause, trial, values, within);
+        effect(case, system, cause, 1.0, &|run| for_run(&cause.written(&all), cause, run))
+    };
+    let whole = with(&|_| true)?;
+    if values.len() == 1 {
+        return Ok(vec![shared(&whole, values[0])]);
+    }
+    let mut made = Vec::new();
+    for (place, value) in values.iter().enumerate() {
+        let (alone, others) = (with(&|own| own == place)?, with(&|own| own != place)?);
+        let mut column = whole.clone();
+        for ((rows, alone), others) in column.iter_mut().zip(&alone).zip(&others) {
+            *rows += alone;
+            *rows -= others;
+        }
+        made.push(shared(&column, 2.0 * value));
+    }
+    Ok(made)
+}
+
+/// All parameters of a cause with those values of its trial's that are `within`; the other linear ones are zero.
+fn placed(cause: &Cause, trial: &Trial, values: &[f64], within: &dyn Fn(usize) -> bool) -> Vec<f64> {
+    let mut shape = trial.shape.iter();
+    let of = |(index, term): (usize, &crate::catalogue::Term)| {
+        if !term.linear {
+            return shape.next().copied().unwrap_or(1.0);
+        }
+        let place = trial.terms.iter().position(|own| *own == index);
+        place.filter(|place| within(*place)).map_or(0.0, |place| values[place])
+    };
+    cause.terms.iter().enumerate().map(of).collect()
+}
+
+fn shared(column: &Column, by: f64) -> Column {
+    column.iter().map(|rows| rows / by).collect()
+}
+
+/// By how much columns of these values miss what others make of them, as a share of that.
+fn missed(made: &[Column], old: &[&Column], values: &[f64]) -> f64 {
+    let (mut off, mut all) = (0.0, 0.0);
+    let Some(first) = made.first() else { return 0.0 };
+    for chunk in 0..first.len() {
+        for row in 0..first[chunk].len() {
+            let sum = |of: &dyn Fn(usize) -> f64| -> f64 {
+                values.iter().enumerate().map(|(place, value)| value * of(place)).sum()
+            };
+            let whole = sum(&|place| made[place][chunk][row]);
+            let straight = sum(&|place| old[place][chunk][row]);
+            off += (whole - straight).powi(2);
+            all += whole * whole;
+        }
+    }
+    if all > 0.0 { (off / all).sqrt() } else { 0.0 }
+}

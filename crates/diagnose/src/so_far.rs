@@ -1,0 +1,135 @@
+//! What was found so far, as part of the model that regressors are made with. Slopes and winds accelerate too, and weight
+//! acts on a slope as well: what is in proportion to mass or acceleration is only told rightly beside them.
+
+use crate::catalogue::Class;
+use crate::prove::text;
+use crate::refine::{Refined, plain};
+use crate::said::{Said, said};
+use crate::search::Found;
+use crate::trial::Pool;
+use crate::{Case, DiagnoseError};
+use headland_plugin::{Action, Effect, Situation, State};
+use headland_scenario::Scenario;
+use headland_sim::{Model, Named};
+use std::sync::Arc;
+
+/// Accelerations that change by less than this share of themselves, in the root mean square, are as they were.
+const SAME: f64 = 0.05;
+
+/// Effects of each run, and what the model with them says.
+pub struct SoFar {
+    effects: Vec<Vec<Arc<dyn Effect>>>,
+    said: Vec<Said>,
+}
+
+/// An effect in many models at once.
+#[derive(Debug)]
+struct Shared(Arc<dyn Effect>);
+
+impl Effect for Shared {
+    fn states(&self) -> Vec<State> {
+        self.0.states()
+    }
+
+    fn act(&self, at: &Situation, states: &[f64], rates: &mut [f64]) -> Action {
+        self.0.act(at, states, rates)
+    }
+
+    fn limits_n(&self, at: &Situation, states: &[f64]) -> (f64, f64) {
+        self.0.limits_n(at, states)
+    }
+
+    fn follow(&self, at: &Situation, states: &[f64], rates: &mut [f64]) {
+        self.0.follow(at, states, rates);
+    }
+}
+
+impl Case<'_> {
+    /// Takes what was found into the model that regressors are made with. Whether that changed how the runs accelerate.
+    pub fn build_on(&mut self, pool: &Pool, found: &Found) -> Result<bool, DiagnoseError> {
+        if found.accepted.is_empty() || self.runs.iter().all(|run| run.force_n.is_none()) {
+            return Ok(false);
+        }
+        let refined = plain(self, pool, found);
+        let before_that = self.so_far.take();
+        let effects = effects(self, &refined)?;
+        let with = |values: &[f64]| {
+            said(&self.runs, &self.kinds, |run| {
+                let model = self.study.model_of(self.study.scenario(), &self.runs[run].measured, values)?;
+                Ok(beside(model, &effects[run]))
+            })
+        };
+        // The vehicle as it was found tells how it accelerates, the nominal one what a regressor changes.
+        let (told, said) = (with(&refined.values())?, with(&self.study.priors())?);
+        let (mut changed, mut all) = (0.0, 0.0);
+        for (run, said) in self.runs.iter_mut().zip(&told) {
+            let before = run.acceleration_m_s2.clone();
+            run.accelerate(&said.resistance_n, &said.effective_mass_kg);
+            for (before, after) in before.iter().zip(&run.acceleration_m_s2) {
+                if before.is_finite() && after.is_finite() {
+                    changed += (after - before).powi(2);
+                    all += after.powi(2);
+                }
+            }
+        }
+        let changes = changed > SAME * SAME * all;
+        self.so_far = if changes { Some(SoFar { effects, said }) } else { before_that };
+        Ok(changes)
+    }
+
+    /// What the model says of every run with what was found so far.
+    pub fn said_so_far(&self) -> &[Said] {
+        self.so_far.as_ref().map_or(&self.nominal, |so_far| &so_far.said)
+    }
+
+    /// The model of a run with what was found so far.
+    pub fn model_so_far(
+        &self,
+        scenario: &Scenario,
+        run: usize,
+        values: &[f64],
+    ) -> Result<Model, DiagnoseError> {
+        let model = self.study.model_of(scenario, &self.runs[run].measured, values)?;
+        Ok(match &self.so_far {
+            Some(so_far) => beside(model, &so_far.effects[run]),
+            None => model,
+        })
+    }
+}
+
+fn beside(mut model: Model, effects: &[Arc<dyn Effect>]) -> Model {
+    for (number, effect) in effects.iter().enumerate() {
+        let plugin = Box::new(Shared(Arc::clone(effect)));
+        model.effects.push(Named { name: format!("so_far_{number}"), plugin });
+    }
+    model
+}
+
+/// The effects that were found, run by run; runs with the same ones share them.
+fn effects(case: &Case, refined: &Refined) -> Result<Vec<Vec<Arc<dyn Effect>>>, DiagnoseError> {
+    let mut known: Vec<(Vec<String>, Vec<Arc<dyn Effect>>)> = Vec::new();
+    let physics: Vec<_> = refined
+        .causes
+        .iter()
+        .filter(|cured| cured.cause.class == Class::Physics)
+        .map(|one| one.along())
+        .collect();
+    let mut all = Vec::new();
+    for run in 0..case.runs.len() {
+        let texts: Vec<String> = physics.iter().filter_map(|cured| text(case, cured, run)).collect();
+        if let Some((_, effects)) = known.iter().find(|(own, _)| *own == texts) {
+            all.push(effects.clone());
+            continue;
+        }
+        let mut scenario = case.study.scenario().clone();
+        for text in &texts {
+            scenario = scenario.with_effect(text, case.registry)?;
+        }
+        let mut model = case.study.model_of(&scenario, &case.runs[run].measured, &case.study.priors())?;
+        let added = model.effects.split_off(model.effects.len() - texts.len());
+        let effects: Vec<Arc<dyn Effect>> = added.into_iter().map(|named| Arc::from(named.plugin)).collect();
+        known.push((texts, effects.clone()));
+        all.push(effects);
+    }
+    Ok(all)
+}

@@ -1,0 +1,105 @@
+//! Claims that do not hold where nothing was fitted: what makes runs worse that it never saw is not known.
+
+use crate::balance::Kind;
+use crate::contradiction::withhold;
+use crate::events::Event;
+use crate::prove::{Proof, prove, told_by};
+use crate::refine::{Refined, refine, spells};
+use crate::search::Found;
+use crate::state::{Part, State};
+use crate::trial::Pool;
+use crate::{Case, DiagnoseError, System};
+
+/// An error that rises by less than this share rises by what a few runs are apart from the others.
+const RISES: f64 = 0.02;
+
+/// What was found, with values and the proof of it.
+pub struct Proven {
+    pub found: Found,
+    pub refined: Refined,
+    /// Why nothing is claimed, where it is not.
+    pub withheld: Option<String>,
+    pub proof: Proof,
+}
+
+impl Proven {
+    fn of(
+        case: &Case,
+        system: &System,
+        pool: &mut Pool,
+        found: Found,
+        events: &[Event],
+        by: Option<Kind>,
+    ) -> Result<Self, DiagnoseError> {
+        let mut refined = refine(case, system, pool, &found)?;
+        spells(case, system, events, &mut refined);
+        let withheld = withhold(case, &mut refined);
+        let proof = prove(case, system, &refined, by)?;
+        Ok(Self { found, refined, withheld, proof })
+    }
+
+    /// Error on runs held out over that of the nominal scenario, where there are any.
+    fn worsened(&self) -> Option<f64> {
+        let errors = self.proof.held_out?;
+        Some(errors.after / errors.before).filter(|ratio| ratio.is_finite())
+    }
+}
+
+/// Values and proof of what was found; causes with which runs held out are worse than with the nominal scenario are taken
+/// back, the one first that does most harm.
+pub fn proven(
+    case: &Case,
+    system: &System,
+    pool: &mut Pool,
+    found: Found,
+    events: &[Event],
+) -> Result<Proven, DiagnoseError> {
+    let mut best = Proven::of(case, system, pool, found, events, None)?;
+    // One signal tells of all of them.
+    let mut withdrawn = false;
+    let by = Some(told_by(system, &best.refined));
+    while let Some(worsened) = best.worsened().filter(|ratio| *ratio > 1.0 + RISES) {
+        let mut least: Option<(f64, Proven)> = None;
+        for place in 0..best.found.stand.parts.len() {
+            let Some(found) = without(case, system, pool, &best.found, place) else { continue };
+            let lesser = Proven::of(case, system, pool, found, events, by)?;
+            if let Some(ratio) = lesser.worsened().filter(|ratio| *ratio < worsened - RISES)
+                && least.as_ref().is_none_or(|(other, _)| ratio < *other)
+            {
+                least = Some((ratio, lesser));
+            }
+        }
+        let Some((_, lesser)) = least else { break };
+        best = lesser;
+        withdrawn = true;
+    }
+    if withdrawn && best.refined.causes.is_empty() && best.withheld.is_none() {
+        best.withheld = Some(nothing_left(case, &best.found));
+    }
+    Ok(best)
+}
+
+/// What is said where everything was taken back.
+fn nothing_left(case: &Case, found: &Found) -> String {
+    let mut names: Vec<&str> = found.unproven.iter().map(|cause| case.causes[*cause].words).collect();
+    names.dedup();
+    format!(
+        "Something is missing that these runs do not have in common: {} would explain those that were fitted and makes those \
+         held out worse, so nothing of it is claimed.",
+        names.join(" and ")
+    )
+}
+
+/// The same without one cause, unless it is one that no other run can show.
+fn without(case: &Case, system: &System, pool: &Pool, found: &Found, place: usize) -> Option<Found> {
+    let state = State { case, system, pool, fit: &case.fit };
+    let mut parts: Vec<Part> = found.stand.parts.clone();
+    let part = parts.remove(place);
+    if state.timed(&part) {
+        return None;
+    }
+    let stand = state.settle(&parts, &found.stand.noises)?;
+    let mut unproven = found.unproven.clone();
+    unproven.push(part.trial.cause);
+    Some(state.found(stand, found.first.clone(), (found.tried.clone(), unproven), found.needed))
+}

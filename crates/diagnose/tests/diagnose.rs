@@ -5,6 +5,8 @@
 
 #![allow(clippy::result_large_err, reason = "a test fails once")]
 
+#[path = "diagnose/beside.rs"]
+mod beside;
 #[path = "diagnose/channels.rs"]
 mod channels;
 #[path = "diagnose/hurt.rs"]

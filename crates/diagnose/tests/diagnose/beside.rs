@@ -1,0 +1,42 @@
+//! Causes beside others, at their size, and on runs that they were not fitted to.
+
+use super::setting::{found, named, recorded};
+use headland_diagnose::{Options, Verdict};
+
+/// A storm pushes with the square of its speed: in proportion to a breeze it would be told far too weak or too strong.
+#[test]
+fn a_storm_is_a_wind_of_its_own_size() {
+    let found = found(&recorded(0.07, "wind(speed_m_s: 14.0, from_rad: 0.9)"), &Options::default()).unwrap();
+    let findings = &found.diagnosis.findings;
+    assert!(findings.len() == 1 && findings[0].id == "wind", "{}", found.diagnosis.answer);
+    for (parameter, truth) in findings[0].parameters.iter().zip([14.0, 0.9]) {
+        assert!(parameter.ci95[0] < truth && truth < parameter.ci95[1], "{parameter:?}");
+    }
+    let held = found.diagnosis.fit.held_out.as_ref().unwrap();
+    assert!(held.rmse_after < 2.0 * held.noise, "{held:?}");
+}
+
+/// On slopes a vehicle accelerates otherwise than its force says, and what turns with the wheels resists just that.
+#[test]
+fn inertia_is_told_beside_slopes() {
+    let slopes = "grade(positions_m: [0, 15, 30, 45, 60, 75, 90, 105, 120], \
+                  grades: [0, 0.03, 0.045, 0.01, -0.03, -0.045, -0.02, 0.02, 0])";
+    let hidden = format!("{slopes}, rotating_inertia(rotating_mass_kg: 1500)");
+    let found = found(&recorded(0.069, &hidden), &Options::default()).unwrap();
+    assert!(named(&found, "grade") && named(&found, "rotating_inertia"), "{}", found.diagnosis.answer);
+}
+
+/// A drag in the runs that are fitted, and none in the one that is held out.
+#[test]
+fn a_cause_that_makes_an_unseen_run_worse_is_not_claimed() {
+    let (with, without) = (recorded(0.069, "brake_drag(force_n: 2500.0)"), recorded(0.069, ""));
+    let mut recording = with;
+    let places = recording.runs.iter_mut().zip(&without.runs).filter(|(run, _)| run.held_out);
+    for (run, other) in places {
+        run.trace = other.trace.clone();
+    }
+    let found = found(&recording, &Options::default()).unwrap().diagnosis;
+    assert!(found.verdict == Verdict::CannotTell && found.findings.is_empty(), "{}", found.answer);
+    assert!(found.answer.contains("do not have in common"), "{}", found.answer);
+    assert!(!found.unproven.is_empty());
+}

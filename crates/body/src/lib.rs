@@ -11,6 +11,7 @@ mod accounts;
 mod chassis;
 mod error;
 mod ground;
+mod hub;
 mod pace;
 mod rig;
 mod spin;
@@ -24,6 +25,7 @@ mod world;
 
 pub use chassis::{AxleBody, Chassis, Differential, Payload, Steering, SteeringMode, Suspension};
 pub use error::BodyError;
+pub use hub::{Hub, hubs};
 
 use headland_sim::{Cycle, Model, Outcome, simulate_on};
 use headland_trace::TraceError;

@@ -241,7 +241,7 @@ fn along_path(track: &Track) -> Vector {
     Vector::new(level * sin, level * cos, track.place.sin_slope)
 }
 
-fn wheels<'a>(axles: &'a Axles, chassis: &Chassis, weight_n: f64) -> Vec<Wheel<'a>> {
+pub(crate) fn wheels<'a>(axles: &'a Axles, chassis: &Chassis, weight_n: f64) -> Vec<Wheel<'a>> {
     let mut wheels = Vec::new();
     for (index, axle) in axles.list().iter().enumerate() {
         let of_tyre = |tyres: f64| tyres * axle.tyre.stiffness_n_per_m();

@@ -72,12 +72,23 @@ pub struct RunOptions {
     /// Where results are put
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Pictures
+    #[command(flatten)]
+    pub picture: RerunOptions,
+}
+
+/// Whether and how runs are drawn by Rerun.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct RerunOptions {
     /// Write `run.rrd` for the Rerun viewer as well
     #[arg(long)]
     pub rerun: bool,
     /// Open the Rerun viewer
     #[arg(long)]
     pub view: bool,
+    /// Serve the Rerun viewer to browsers on this machine, until it is interrupted
+    #[arg(long)]
+    pub serve: bool,
 }
 
 /// A scenario and the recording that it is held against.
@@ -103,12 +114,9 @@ pub struct CompareOptions {
     /// What has to hold in every run, as in "speed_m_s rmse < 0.2 m/s"; repeatable
     #[arg(long, value_name = "REQUIREMENT")]
     pub require: Vec<String>,
-    /// Write `run.rrd` for the Rerun viewer as well
-    #[arg(long)]
-    pub rerun: bool,
-    /// Open the Rerun viewer
-    #[arg(long)]
-    pub view: bool,
+    /// Pictures
+    #[command(flatten)]
+    pub picture: RerunOptions,
 }
 
 /// Options of `headland calibrate`.

@@ -21,6 +21,8 @@ mod pace;
 mod page;
 mod picture;
 mod say;
+#[cfg(feature = "rerun")]
+mod scenery;
 mod staged;
 mod study_input;
 mod validation;

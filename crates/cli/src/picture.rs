@@ -1,54 +1,103 @@
 //! Runs as a Rerun recording, where the program was built with it.
 
+use crate::arguments::RerunOptions;
 use crate::failure::Failure;
 use crate::held::Pair;
 use crate::output::Output;
+use crate::say::Say;
+#[cfg(feature = "rerun")]
+use crate::scenery::{self, Stage};
+use headland_plugin::Registry;
 use headland_scenario::Scenario;
 use headland_trace::Run;
+use std::path::PathBuf;
 
 /// What is wanted of Rerun.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(not(feature = "rerun"), allow(dead_code, reason = "without Rerun nothing is shown"))]
 pub struct Wanted {
     write: bool,
     view: bool,
+    serve: bool,
 }
 
 impl Wanted {
-    /// Of the options; to view is to write too.
-    pub fn of(rerun: bool, view: bool) -> Self {
-        Self { write: rerun || view, view }
+    /// Of the options; to view or to serve is to write too.
+    pub fn of(options: RerunOptions) -> Self {
+        let RerunOptions { rerun, view, serve } = options;
+        Self { write: rerun || view || serve, view, serve }
+    }
+
+    /// Whether this program can draw, asked before anything is simulated.
+    pub fn possible(self) -> Result<(), Failure> {
+        if self.write && !cfg!(feature = "rerun") {
+            return Err(Failure::Input(
+                "this `headland` was built without Rerun; build it with `--features rerun` for --rerun, --view and --serve"
+                    .to_owned(),
+            ));
+        }
+        Ok(())
     }
 }
 
-/// Whether this program can draw, asked before anything is simulated.
-pub fn possible(wanted: bool) -> Result<(), Failure> {
-    if wanted && !cfg!(feature = "rerun") {
-        return Err(Failure::Input(
-            "this `headland` was built without Rerun; build it with `--features rerun` for --rerun and --view".to_owned(),
-        ));
+/// A picture that was written, and is served if it is to be.
+#[must_use = "what is to be served is served by `serve`"]
+#[derive(Debug)]
+pub struct Picture {
+    #[cfg_attr(not(feature = "rerun"), allow(dead_code, reason = "nothing is served without Rerun"))]
+    served: Option<PathBuf>,
+}
+
+impl Picture {
+    /// Serves the picture, until the server ends or is interrupted.
+    #[cfg(not(feature = "rerun"))]
+    #[allow(clippy::unused_self, clippy::unnecessary_wraps, reason = "as with Rerun")]
+    pub fn serve(self, _: Say) -> Result<(), Failure> {
+        Ok(())
     }
-    Ok(())
+
+    /// Serves the picture, until the server ends or is interrupted.
+    #[cfg(feature = "rerun")]
+    pub fn serve(self, say: Say) -> Result<(), Failure> {
+        let Some(path) = self.served else { return Ok(()) };
+        let server = headland_view::serve(&path).map_err(refused)?;
+        say.progress(&format!(
+            "serving {} at {}, to this machine alone, until interrupted",
+            path.display(),
+            server.address()
+        ));
+        server.wait().map_err(refused)
+    }
+}
+
+/// What is drawn.
+#[cfg_attr(not(feature = "rerun"), allow(dead_code, reason = "what is drawn is read by Rerun alone"))]
+#[derive(Clone, Copy)]
+pub struct Drawn<'a> {
+    /// The scenario.
+    pub scenario: &'a Scenario,
+    /// All models.
+    pub registry: &'a Registry,
+    /// What was simulated, or replayed.
+    pub runs: &'a [Run],
+    /// What it was held against.
+    pub pairs: &'a [Pair],
 }
 
 /// Writes `run.rrd` and opens the viewer, as wanted.
 #[cfg(not(feature = "rerun"))]
-pub fn draw(wanted: Wanted, _: &Scenario, _: &[Run], _: &[Pair], _: &mut Output) -> Result<(), Failure> {
-    possible(wanted.write || wanted.view)
+pub fn draw(wanted: Wanted, _: &Drawn, _: &mut Output) -> Result<Picture, Failure> {
+    wanted.possible().map(|()| Picture { served: None })
 }
 
 /// Writes `run.rrd` and opens the viewer, as wanted.
 #[cfg(feature = "rerun")]
-pub fn draw(
-    wanted: Wanted,
-    scenario: &Scenario,
-    runs: &[Run],
-    pairs: &[Pair],
-    output: &mut Output,
-) -> Result<(), Failure> {
-    use headland_view::{Axis, ForceArrow, Scene};
+pub fn draw(wanted: Wanted, drawn: &Drawn, output: &mut Output) -> Result<Picture, Failure> {
+    use headland_view::{Axis, ForceArrow, Scene, Setting};
     if !wanted.write {
-        return Ok(());
+        return Ok(Picture { served: None });
     }
+    let Drawn { scenario, registry, runs, pairs } = *drawn;
     let measured: Vec<Run> = pairs
         .iter()
         .map(|pair| Run { id: pair.comparison.run.clone(), trace: pair.measured.clone() })
@@ -65,19 +114,28 @@ pub fn draw(
         arrow("brake_force_n", "brakes", Axis::Backward),
         arrow("drawbar_force_n", "drawbar", Axis::Backward),
     ];
-    let drawn = |arrow: &ForceArrow| runs.iter().any(|run| run.trace.channel(arrow.channel).is_some());
-    let forces: Vec<ForceArrow> = all.into_iter().filter(drawn).collect();
+    let there = |arrow: &ForceArrow| runs.iter().any(|run| run.trace.channel(arrow.channel).is_some());
+    let forces: Vec<ForceArrow> = all.into_iter().filter(there).collect();
+    // A replay follows its recording, wherever that was driven.
+    let stages = if pairs.is_empty() { scenery::stages(scenario, registry, runs)? } else { Vec::new() };
+    let settings: Vec<Setting> = stages.iter().map(Stage::setting).collect();
+    let vehicle =
+        stages.iter().find_map(|stage| stage.rig.as_ref()).map_or_else(|| body(scenario), scenery::body);
     let scene = Scene {
         title: &scenario.about,
         runs,
         measured: &measured,
         forces: &forces,
-        vehicle: body(scenario),
+        vehicle,
         ground: None,
+        settings: &settings,
     };
     let path = output.file("run.rrd");
     headland_view::write(&scene, &path).map_err(refused)?;
-    if wanted.view { headland_view::show(&path).map_err(refused) } else { Ok(()) }
+    if wanted.view {
+        headland_view::show(&path).map_err(refused)?;
+    }
+    Ok(Picture { served: wanted.serve.then_some(path) })
 }
 
 #[cfg(feature = "rerun")]

@@ -74,6 +74,12 @@ pub trait Soil: Debug + Send + Sync {
         false
     }
 
+    /// What the ground is called at a place; `None` where it is the same everywhere.
+    fn called(&self, place: &Place) -> Option<&str> {
+        let _ = place;
+        None
+    }
+
     /// Whether it is made of other soils, which `ground.soils` names.
     fn needs_soils(&self) -> bool {
         false

@@ -45,9 +45,12 @@ impl<L: Layout + DeserializeOwned + 'static> Plugin for Mosaic<L> {
 
 #[allow(private_bounds, reason = "the layouts are those of this crate")]
 impl<L: Layout> Mosaic<L> {
+    fn lying(&self, place: &Place) -> Option<&(String, Box<dyn Soil>)> {
+        self.soils.get(*self.named.get(self.layout.which(place))?)
+    }
+
     fn soil(&self, place: &Place) -> Option<&dyn Soil> {
-        let index = self.named.get(self.layout.which(place))?;
-        self.soils.get(*index).map(|(_, soil)| &**soil)
+        self.lying(place).map(|(_, soil)| &**soil)
     }
 }
 
@@ -67,6 +70,10 @@ impl<L: Layout> Soil for Mosaic<L> {
 
     fn needs_axles(&self) -> bool {
         self.soils.iter().any(|(_, soil)| soil.needs_axles())
+    }
+
+    fn called(&self, place: &Place) -> Option<&str> {
+        self.lying(place).map(|(name, _)| name.as_str())
     }
 
     fn needs_soils(&self) -> bool {

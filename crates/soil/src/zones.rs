@@ -157,6 +157,9 @@ mod tests {
         for (east, north, expected) in table {
             assert!((resistance_n(&zones, east, north) - expected).abs() < 1e-9, "{east} {north}");
         }
+        let called =
+            |east_m, north_m| zones.called(&Place { east_m, north_m, ..Place::default() }).map(str::to_owned);
+        assert_eq!([called(25.0, 20.0), called(20.0, 25.0)].map(Option::unwrap), ["road", "field"]);
         assert!(zones.layout.areas[0].size_m2() == 50.0 && zones.layout.areas[1].size_m2() == 1000.0);
     }
 

@@ -132,8 +132,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         other => return Err(format!("found `{other}`, expected alone, compared or study").into()),
     };
-    let scene =
-        Scene { title, runs: &runs, measured: &measured, forces: &FORCES, vehicle: TRACTOR, ground: None };
+    let scene = Scene {
+        title,
+        runs: &runs,
+        measured: &measured,
+        forces: &FORCES,
+        vehicle: TRACTOR,
+        ground: None,
+        settings: &[],
+    };
     write(&scene, &path)?;
     if arguments.get(2).is_some_and(|word| word == "show") {
         show(&path)?;

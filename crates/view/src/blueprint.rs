@@ -1,11 +1,11 @@
 //! How the viewer lays everything out: the vehicle on the left, what is to be read on the right.
 
 use crate::entity::{self, Who};
-use crate::groups::Group;
+use crate::groups::{Group, Rank};
 use crate::lanes::Lane;
 use crate::path::Pose;
 use crate::plots::{COMPARED, residual};
-use crate::recorder::{Recorder, TIMELINE, encode};
+use crate::recorder::{Recorder, TIMELINE, encode, nanoseconds};
 use crate::{Scene, ViewError};
 use rerun::datatypes::{TimeInt, TimeRange, TimeRangeBoundary};
 use rerun::external::re_log_types::{BlueprintActivationCommand, StoreKind};
@@ -31,7 +31,7 @@ pub(crate) fn messages(
     let mut layout = Layout { to, nodes: 0, times_s: times_s(lanes) };
     let space = layout.space(scene, lanes)?;
     let text = layout.view("TextDocument", "About", &[entity::summary()], &[])?;
-    let left = layout.split(ContainerKind::Vertical, "", &[space, text], &[6.0, 1.0])?;
+    let left = layout.split(ContainerKind::Vertical, "", &[space, text], &[5.0, 1.0])?;
     let right = layout.plots(groups, lanes)?;
     let root = layout.split(ContainerKind::Horizontal, "", &[left, right], &[6.0, 5.0])?;
     layout.frame(&root)?;
@@ -194,10 +194,11 @@ impl Layout {
         self.split(ContainerKind::Tabs, "Runs", &tabs, &[])
     }
 
-    /// Speed, its residual, forces, powers, and tabs for the rest.
+    /// Speed, its residual, forces, powers, and tabs for wheels and for the rest.
     fn column(&mut self, groups: &[Group], lane: &Lane, name: &str) -> Result<Node, ViewError> {
         let id = &lane.run.id;
-        let (mut parts, mut shares, mut rest) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut parts, mut shares) = (Vec::new(), Vec::new());
+        let (mut wheels, mut rest) = (Vec::new(), Vec::new());
         for group in groups {
             let lines: Vec<EntityPath> = group
                 .channels
@@ -214,9 +215,16 @@ impl Layout {
                 continue;
             }
             let plot = self.plot(&group.title, &lines)?;
-            if !group.main {
-                rest.push(plot);
-                continue;
+            match group.rank {
+                Rank::Main => {}
+                Rank::Wheels => {
+                    wheels.push(plot);
+                    continue;
+                }
+                Rank::More => {
+                    rest.push(plot);
+                    continue;
+                }
             }
             parts.push(plot);
             shares.push(3.0);
@@ -228,18 +236,18 @@ impl Layout {
                 shares.push(2.0);
             }
         }
-        if !rest.is_empty() {
-            parts.push(self.split(ContainerKind::Tabs, "More", &rest, &[])?);
-            shares.push(3.0);
+        for (title, tabs) in [("Wheels", wheels), ("More", rest)] {
+            if !tabs.is_empty() {
+                parts.push(self.split(ContainerKind::Tabs, title, &tabs, &[])?);
+                shares.push(3.0);
+            }
         }
         self.split(ContainerKind::Vertical, name, &parts, &shares)
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "nanoseconds of three centuries fit")]
     fn plot(&mut self, title: &str, lines: &[EntityPath]) -> Result<Node, ViewError> {
         let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
-        let [from, to] =
-            self.times_s.map(|time_s| TimeRangeBoundary::Absolute(TimeInt((time_s * 1e9).round() as i64)));
+        let [from, to] = self.times_s.map(|time_s| TimeRangeBoundary::Absolute(TimeInt(nanoseconds(time_s))));
         let axis = TimeAxis::new().with_view_range(TimeRange { start: from, end: to });
         self.view("TimeSeries", title, lines, &[("PlotLegend", &legend), ("TimeAxis", &axis)])
     }
@@ -269,7 +277,7 @@ mod tests {
     use std::f64::consts::FRAC_PI_2;
 
     fn pose(travelled_m: f64, east_m: f64, north_m: f64) -> Pose {
-        Pose { time_s: 0.0, travelled_m, at: [east_m, north_m, 0.0], heading_rad: 1.0, pitch_rad: 0.0 }
+        Pose { travelled_m, at: [east_m, north_m, 0.0], heading_rad: 1.0, ..Pose::default() }
     }
 
     #[test]

@@ -25,7 +25,13 @@ pub(crate) const RESIDUAL: Colour = GREEN;
 
 /// The line of one of several runs, of which each has its own.
 pub(crate) fn of_run(index: usize, count: usize) -> Colour {
-    if count > 1 { SERIES[index % SERIES.len()] } else { MODELLED }
+    let again = index / SERIES.len() % 2 == 1;
+    match SERIES[index % SERIES.len()] {
+        _ if count <= 1 => MODELLED,
+        // A seventh run is a paler first one.
+        colour if again => pale(colour),
+        colour => colour,
+    }
 }
 
 /// The line of the recording that belongs to it.

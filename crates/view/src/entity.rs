@@ -16,9 +16,14 @@ pub(crate) fn ground(part: &str) -> EntityPath {
     entity(&["world", "ground", part])
 }
 
+/// What belongs to a run and does not move with its vehicle.
+pub(crate) fn of_run(run: &str, who: Who, part: &str) -> EntityPath {
+    entity(&["world", "runs", run, who.name(), part])
+}
+
 /// The line that a run drives.
 pub(crate) fn line(run: &str, who: Who) -> EntityPath {
-    entity(&["world", "runs", run, who.name(), "path"])
+    of_run(run, who, "path")
 }
 
 /// A run's vehicle.

@@ -3,7 +3,10 @@
 use crate::entity::{self, Who};
 use crate::lanes::{Lane, lanes};
 use crate::recorder::{Recorder, encode};
-use crate::{Scene, ViewError, blueprint, forces, groups, plots, summary, surroundings, vehicle};
+use crate::summary::Scales;
+use crate::{
+    Scene, ViewError, balance, blueprint, forces, groups, plots, ruts, summary, surroundings, vehicle, wheels,
+};
 use rerun::external::re_build_info::CrateVersion;
 use rerun::external::re_log_encoding::Encoder;
 use rerun::external::re_log_encoding::rrd::EncodingOptions;
@@ -35,7 +38,7 @@ pub fn write(scene: &Scene, path: &Path) -> Result<(), ViewError> {
 /// Everything that the file holds: the layout first, so that the viewer has it before the data.
 pub(crate) fn messages(scene: &Scene) -> Result<Vec<LogMsg>, ViewError> {
     scene.check()?;
-    let (lanes, shift) = lanes(scene)?;
+    let lanes = lanes(scene)?;
     let groups = groups::groups(scene);
     let title = if scene.title.trim().is_empty() { "Headland" } else { scene.title };
     // A name of other characters would get a number behind it.
@@ -44,9 +47,21 @@ pub(crate) fn messages(scene: &Scene) -> Result<Vec<LogMsg>, ViewError> {
     let name = if name.trim().is_empty() { "Headland" } else { name.trim() };
     let application = ApplicationId::try_new(name).map_err(encode)?;
     let to = Recorder::new(RecordingStreamBuilder::new(application.clone()).recording_name(title))?;
-    let stripe_m = surroundings::draw(&to, scene, &lanes, shift)?;
+    let grounds = surroundings::draw(&to, scene, &lanes)?;
     let newton_per_m = forces::newton_per_m(scene);
-    for lane in &lanes {
+    let scales = Scales {
+        newton_per_m,
+        wheels_newton_per_m: wheels::newton_per_m(scene),
+        m_s_per_m: balance::m_s_per_m(scene.runs, &scene.vehicle),
+        deepest_m: scene
+            .runs
+            .iter()
+            .filter_map(|run| ruts::deepest_m(run, scene.rig(&run.id)?))
+            .reduce(f64::max),
+    };
+    for (number, lane) in lanes.iter().enumerate() {
+        // Of many vehicles the labels would hide one another.
+        let labelled = number == 0;
         let Lane { run, path, measured, colour, pale, .. } = lane;
         let name = |who: Who| match (scene.runs.len(), measured.is_some()) {
             (1, false) => String::new(),
@@ -54,21 +69,31 @@ pub(crate) fn messages(scene: &Scene) -> Result<Vec<LogMsg>, ViewError> {
             (_, false) => run.id.clone(),
             (_, true) => format!("{} {}", run.id, who.name()),
         };
-        vehicle::drive(&to, &run.id, Who::Modelled, path, &scene.vehicle, (&name(Who::Modelled), *colour))?;
+        let rig = scene.rig(&run.id);
+        let named = name(Who::Modelled);
+        vehicle::drive(&to, (run, rig), Who::Modelled, path, &scene.vehicle, (&named, *colour))?;
+        if let Some(rig) = rig {
+            ruts::draw(&to, run, path, rig, scales.deepest_m)?;
+            balance::draw(&to, run, path, rig, &scene.vehicle, (scales.m_s_per_m, labelled))?;
+            let base = entity::vehicle(&run.id, Who::Modelled);
+            if let Some(newton_per_m) = scales.wheels_newton_per_m {
+                wheels::draw_forces(&to, &base, run, path, rig, newton_per_m)?;
+            }
+        }
         if let Some(measured) = measured {
             vehicle::drive(
                 &to,
-                &run.id,
+                (run, None),
                 Who::Measured,
                 measured,
                 &scene.vehicle,
                 (&name(Who::Measured), *pale),
             )?;
         }
-        forces::draw(&to, scene, run, newton_per_m)?;
+        forces::draw(&to, scene, run, (newton_per_m, labelled))?;
         plots::draw(&to, scene, &groups, lane)?;
     }
-    let text = TextDocument::from_markdown(summary::summary(scene, newton_per_m, stripe_m));
+    let text = TextDocument::from_markdown(summary::summary(scene, &scales, &grounds));
     to.fixed(&entity::summary(), &text)?;
     let mut messages = blueprint::messages(&application, scene, &groups, &lanes)?;
     messages.extend(to.finish());

@@ -9,7 +9,7 @@ use crate::strip::round_up;
 use crate::thin::{MOST, thin};
 use crate::{ViewError, groups};
 use headland_trace::Run;
-use rerun::{Arrows3D, Color};
+use rerun::{Arrows3D, Color, Transform3D};
 
 /// The longest arrow, in lengths of the vehicle.
 const LONGEST: f64 = 1.2;
@@ -54,10 +54,19 @@ fn arrow(body: &Body, axis: Axis, (index, count): (usize, usize), length_m: f64)
     (origin, vector)
 }
 
-/// Draws the forces of a run at its vehicle.
-pub(crate) fn draw(to: &Recorder, scene: &Scene, run: &Run, newton_per_m: f64) -> Result<(), ViewError> {
+/// Draws the forces of a run at its vehicle, with their names and values if they are to be labelled.
+pub(crate) fn draw(
+    to: &Recorder,
+    scene: &Scene,
+    run: &Run,
+    (newton_per_m, labelled): (f64, bool),
+) -> Result<(), ViewError> {
     let body = &scene.vehicle;
     let level = scene.forces.iter().filter(|force| force.axis != Axis::Up).count();
+    if let Some(rig) = scene.rig(&run.id) {
+        let seat = Transform3D::from_translation(single(rig.seat_m(body.wheel_radius_m)));
+        to.fixed(&part(&vehicle(&run.id, Who::Modelled), "forces"), &seat)?;
+    }
     let mut rank = 0;
     for ForceArrow { channel, label, axis } in scene.forces {
         let place = (rank, level.max(1));
@@ -78,7 +87,7 @@ pub(crate) fn draw(to: &Recorder, scene: &Scene, run: &Run, newton_per_m: f64) -
         let look = Arrows3D::update_fields()
             .with_colors([Color::from_rgb(red, green, blue)])
             .with_radii([radius_m(body)])
-            .with_show_labels(true);
+            .with_show_labels(labelled);
         to.fixed(&at, &look)?;
         let columns = Arrows3D::update_fields()
             .with_vectors(arrows.iter().map(|(_, vector)| single(*vector)))

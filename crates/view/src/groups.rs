@@ -1,8 +1,11 @@
-//! Which channels share a plot.
+//! Which channels share a plot: those of one unit, of all wheels those that say the same, and the two angles at which a vehicle
+//! leans.
 
 use crate::Scene;
 use crate::colour::{Colour, SERIES};
 use crate::plots::COMPARED;
+use crate::wheel_channel::of_wheel;
+use headland_trace::Channel;
 use headland_units::{stem, unit_of_name};
 
 /// Channels of one unit.
@@ -10,10 +13,21 @@ use headland_units::{stem, unit_of_name};
 pub(crate) struct Group {
     /// What stands over the plot.
     pub title: String,
-    /// Whether it has its own place; the others share one.
-    pub main: bool,
+    /// Where it is shown.
+    pub rank: Rank,
     /// The channels, in the order of the traces.
     pub channels: Vec<String>,
+}
+
+/// Where a group is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Rank {
+    /// It has its own place.
+    Main,
+    /// It shares one with the others of single wheels.
+    Wheels,
+    /// It shares one with the rest.
+    More,
 }
 
 /// Units that have a noun, those of the main plots first.
@@ -40,23 +54,60 @@ pub(crate) fn words(channel: &str) -> String {
     stem(channel).replace('_', " ")
 }
 
-/// All channels of all runs: speed, forces, powers, then the rest.
+/// How a vehicle leans.
+const LEANING: [&str; 2] = ["roll_rad", "pitch_rad"];
+
+/// All channels of all runs: speed, forces, powers, then the rest. Where single wheels are known, sums over axles are left out.
 pub(crate) fn groups(scene: &Scene) -> Vec<Group> {
-    let mut units: Vec<(String, Vec<String>)> = Vec::new();
-    for channel in scene.runs.iter().chain(scene.measured).flat_map(|run| run.trace.channels()) {
-        if !channel.values.iter().any(|value| value.is_finite()) {
-            continue;
-        }
-        let unit = unit(&channel.name);
-        let index = units.iter().position(|(known, _)| *known == unit).unwrap_or_else(|| {
-            units.push((unit, Vec::new()));
-            units.len() - 1
-        });
-        let channels = &mut units[index].1;
-        if !channels.contains(&channel.name) {
-            channels.push(channel.name.clone());
+    let channels = || scene.runs.iter().chain(scene.measured).flat_map(|run| run.trace.channels());
+    let mut wheels: Vec<(&str, Vec<String>)> = Vec::new();
+    for channel in channels() {
+        let Some(own) = of_wheel(&channel.name).filter(|own| own.single) else { continue };
+        if channel.values.iter().any(|value| value.is_finite()) {
+            put(&mut wheels, own.what, &channel.name);
         }
     }
+    let leaning = !wheels.is_empty();
+    let apart = |name: &str| {
+        of_wheel(name).is_some_and(|own| wheels.iter().any(|(what, _)| *what == own.what))
+            || (leaning && LEANING.contains(&name))
+    };
+    let mut groups = by_unit(channels().filter(|channel| !apart(&channel.name)), leaning);
+    let names: Vec<String> = LEANING.map(str::to_owned).into();
+    if leaning && channels().any(|channel| LEANING.contains(&channel.name.as_str())) {
+        let place = groups.iter().take_while(|group| group.rank == Rank::Main).count();
+        groups.insert(
+            place,
+            Group { title: "Roll and pitch [rad]".to_owned(), rank: Rank::Main, channels: names },
+        );
+    }
+    groups.extend(wheels.into_iter().map(|(what, channels)| {
+        let title = format!("{} [{}]", capital(&words(what)), unit(what));
+        Group { title, rank: Rank::Wheels, channels }
+    }));
+    groups
+}
+
+fn put<K: PartialEq>(groups: &mut Vec<(K, Vec<String>)>, key: K, name: &str) {
+    let index = groups.iter().position(|(known, _)| *known == key).unwrap_or_else(|| {
+        groups.push((key, Vec::new()));
+        groups.len() - 1
+    });
+    let channels = &mut groups[index].1;
+    if !channels.iter().any(|known| known == name) {
+        channels.push(name.to_owned());
+    }
+}
+
+/// Channels of one unit; powers give their place to what a rigid body has beside.
+fn by_unit<'a>(channels: impl Iterator<Item = &'a Channel>, leaning: bool) -> Vec<Group> {
+    let mut units: Vec<(String, Vec<String>)> = Vec::new();
+    for channel in channels {
+        if channel.values.iter().any(|value| value.is_finite()) {
+            put(&mut units, unit(&channel.name), &channel.name);
+        }
+    }
+    let main = MAIN - usize::from(leaning);
     let rank = |unit: &str| NOUNS.iter().position(|(known, _)| *known == unit).unwrap_or(NOUNS.len());
     units.sort_by_key(|(unit, _)| rank(unit));
     units
@@ -69,7 +120,8 @@ pub(crate) fn groups(scene: &Scene) -> Vec<Group> {
                 (None, _) if unit == "1" => "Ratios".to_owned(),
                 (None, _) => "Values".to_owned(),
             };
-            Group { title: format!("{noun} [{unit}]"), main: rank(&unit) < MAIN, channels }
+            let place = if rank(&unit) < main { Rank::Main } else { Rank::More };
+            Group { title: format!("{noun} [{unit}]"), rank: place, channels }
         })
         .collect()
 }
@@ -111,11 +163,54 @@ mod tests {
             wheelbase_m: 1.0,
             track_m: 1.0,
         };
-        let scene = Scene { title: "", runs: &runs, measured: &[], forces: &[], vehicle, ground: None };
+        let scene = Scene {
+            title: "",
+            runs: &runs,
+            measured: &[],
+            forces: &[],
+            vehicle,
+            ground: None,
+            settings: &[],
+        };
         let groups = groups(&scene);
         let titles: Vec<&str> = groups.iter().map(|group| group.title.as_str()).collect();
         assert_eq!(titles, ["Speed [m/s]", "Force [N]", "Ratios [1]", "Soil [kg/m^3]"]);
         assert_eq!(groups[1].channels, ["drawbar_force_n", "tractive_force_n"]);
         assert_ne!(colour(&groups, "drawbar_force_n"), colour(&groups, "tractive_force_n"));
+    }
+
+    /// Forces of four wheels beside those of the vehicle would be a plot that nobody can read.
+    #[test]
+    fn channels_of_wheels_share_a_plot_by_what_they_say() {
+        let mut trace = Trace::new(vec![0.0]).unwrap();
+        for name in [
+            "speed_m_s",
+            "air_n",
+            "power_w",
+            "roll_rad",
+            "heading_rad",
+            "axle_1_load_n",
+            "axle_1_left_load_n",
+            "axle_1_right_load_n",
+            "axle_1_left_side_force_n",
+            "axle_1_sinkage_m",
+        ] {
+            trace.push(name, vec![1.0], Origin::Predicted).unwrap();
+        }
+        let runs = [Run { id: "r1".to_owned(), trace }];
+        let groups = groups(&crate::scene::tests::scene(&runs, &[]));
+        let told: Vec<(&str, Rank)> = groups.iter().map(|group| (group.title.as_str(), group.rank)).collect();
+        let expected = [
+            ("Speed [m/s]", Rank::Main),
+            ("Force [N]", Rank::Main),
+            ("Roll and pitch [rad]", Rank::Main),
+            ("Power [W]", Rank::More),
+            ("Length [m]", Rank::More),
+            ("Angle [rad]", Rank::More),
+            ("Load [N]", Rank::Wheels),
+            ("Side force [N]", Rank::Wheels),
+        ];
+        assert_eq!(told, expected);
+        assert_eq!(groups[6].channels, ["axle_1_left_load_n", "axle_1_right_load_n"]);
     }
 }

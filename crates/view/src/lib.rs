@@ -1,9 +1,10 @@
 //! Runs as a Rerun recording: the vehicle on its path over the ground, its forces as arrows, and its channels as plots,
 //! all on one timeline called `time`, in seconds.
 //!
-//! [`write()`] makes the file, [`show`] starts the viewer on it, [`open`] does both. Of a run with its recording both
+//! [`write()`] makes the file, [`show`] starts the viewer on it, [`open`] does both, [`serve`] serves it to browsers. Of a run with its recording both
 //! vehicles are drawn, the recorded one transparent, and both lines stand in the same plot.
 
+mod balance;
 mod blueprint;
 mod colour;
 mod entity;
@@ -17,17 +18,24 @@ mod mesh;
 mod path;
 mod plots;
 mod recorder;
+mod relief;
+mod ruts;
 mod scene;
+mod setting;
 mod strip;
 mod summary;
 mod surroundings;
 mod thin;
 mod tractor;
+mod turn;
 mod vehicle;
 mod viewer;
+mod wheel_channel;
+mod wheels;
 
 pub use error::ViewError;
 pub use file::write;
 pub use ground::Ground;
 pub use scene::{Axis, Body, ForceArrow, Scene};
-pub use viewer::{VIEWER_VERSION, open, show};
+pub use setting::{Relief, Rig, RigWheel, Setting};
+pub use viewer::{Server, VIEWER_VERSION, open, serve, show};

@@ -2,10 +2,11 @@
 
 use crate::colour::{Colour, RESIDUAL, pale};
 use crate::entity::{self, Who};
-use crate::groups::{self, Group, words};
+use crate::groups::{self, Group};
 use crate::lanes::Lane;
 use crate::recorder::Recorder;
 use crate::thin::{MOST, thin};
+use crate::wheel_channel::of_wheel;
 use crate::{Scene, ViewError};
 use headland_trace::{Origin, Run};
 use rerun::{Color, EntityPath, Scalars, SeriesLines};
@@ -17,6 +18,9 @@ pub(crate) const COMPARED: &str = "speed_m_s";
 pub(crate) fn draw(to: &Recorder, scene: &Scene, groups: &[Group], lane: &Lane) -> Result<(), ViewError> {
     let id = &lane.run.id;
     let force = |name: &str| scene.forces.iter().find(|force| force.channel == name).map(|force| force.label);
+    let words = |name: &str| {
+        of_wheel(name).filter(|own| own.single).map_or(groups::words(name), |own| own.part.replace('_', " "))
+    };
     let of_run = |channel: &str, name: String| {
         if channel == COMPARED && scene.runs.len() > 1 { format!("{id}: {name}") } else { name }
     };

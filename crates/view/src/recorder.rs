@@ -1,8 +1,9 @@
 //! Messages as Rerun stores them, collected in memory.
 
 use crate::ViewError;
-use rerun::log::LogMsg;
+use rerun::log::{Chunk, LogMsg, RowId};
 use rerun::sink::MemorySinkStorage;
+use rerun::time::{TimePoint, Timeline};
 use rerun::{
     AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, SerializationResult,
     SerializedComponentColumn, TimeColumn,
@@ -21,6 +22,11 @@ pub(crate) fn encode(error: impl std::fmt::Display) -> ViewError {
     ViewError::Encode { reason: error.to_string() }
 }
 
+#[expect(clippy::cast_possible_truncation, reason = "nanoseconds of three centuries fit")]
+pub(crate) fn nanoseconds(time_s: f64) -> i64 {
+    (time_s * 1e9).round() as i64
+}
+
 impl Recorder {
     pub(crate) fn new(builder: RecordingStreamBuilder) -> Result<Self, ViewError> {
         let (stream, storage) = builder.enabled(true).memory().map_err(encode)?;
@@ -35,6 +41,16 @@ impl Recorder {
     /// What holds at any time.
     pub(crate) fn fixed(&self, at: &EntityPath, what: &dyn AsComponents) -> Result<(), ViewError> {
         self.stream.log_static(at.clone(), what).map_err(encode)
+    }
+
+    /// What holds from a time on.
+    pub(crate) fn at(&self, at: &EntityPath, time_s: f64, what: &dyn AsComponents) -> Result<(), ViewError> {
+        // The stream's own `log` would add the time at which it was written.
+        let time = TimePoint::default().with(Timeline::new_duration(TIMELINE), nanoseconds(time_s));
+        let chunk =
+            Chunk::builder(at.clone()).with_archetype(RowId::new(), time, what).build().map_err(encode)?;
+        self.stream.send_chunk(chunk);
+        Ok(())
     }
 
     /// What changes: one row for each time.

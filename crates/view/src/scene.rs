@@ -1,5 +1,6 @@
 //! What is drawn.
 
+use crate::setting::{Rig, Setting};
 use crate::{Ground, ViewError};
 use headland_trace::Run;
 use std::collections::BTreeSet;
@@ -22,6 +23,8 @@ pub struct Scene<'a> {
     pub vehicle: Body,
     /// The ground; a strip along the path where there is none.
     pub ground: Option<Ground<'a>>,
+    /// What else is known of single runs.
+    pub settings: &'a [Setting<'a>],
 }
 
 /// A channel that is drawn as an arrow.
@@ -74,7 +77,17 @@ pub struct Body {
     pub track_m: f64,
 }
 
-impl Scene<'_> {
+impl<'a> Scene<'a> {
+    /// What is known of a run.
+    pub(crate) fn setting(&self, run: &str) -> Option<&'a Setting<'a>> {
+        self.settings.iter().find(|setting| setting.run == run)
+    }
+
+    /// The wheels of a run.
+    pub(crate) fn rig(&self, run: &str) -> Option<&'a Rig> {
+        self.setting(run)?.rig.as_ref()
+    }
+
     /// # Errors
     /// What cannot be drawn, before anything is.
     pub(crate) fn check(&self) -> Result<(), ViewError> {
@@ -108,6 +121,7 @@ impl Scene<'_> {
                 return Err(ViewError::Body { name, found });
             }
         }
+        self.settings.iter().try_for_each(Setting::check)?;
         self.ground.as_ref().map_or(Ok(()), Ground::check)
     }
 }
@@ -137,7 +151,7 @@ pub(crate) mod tests {
     }
 
     pub(crate) fn scene<'a>(runs: &'a [Run], measured: &'a [Run]) -> Scene<'a> {
-        Scene { title: "", runs, measured, forces: &[], vehicle: BODY, ground: None }
+        Scene { title: "", runs, measured, forces: &[], vehicle: BODY, ground: None, settings: &[] }
     }
 
     #[test]

@@ -144,7 +144,7 @@ mod tests {
             travelled_m,
             at: [travelled_m, 0.0, 2.0],
             heading_rad: std::f64::consts::FRAC_PI_2,
-            pitch_rad: 0.0,
+            ..Pose::default()
         };
         Path { poses: vec![pose(0.0), pose(0.0), pose(length_m)], located: false }
     }

@@ -18,7 +18,7 @@ const LAMP: Colour = [255, 250, 220];
 const STEPS: u32 = 48;
 
 /// Width of a tyre [m]: from the outer edge in to the middle of the track, and as much again.
-fn tyre_width_m(body: &Body) -> f64 {
+pub(crate) fn tyre_width_m(body: &Body) -> f64 {
     (body.width_m - body.track_m).clamp(0.25 * body.wheel_radius_m, 0.45 * body.width_m)
 }
 
@@ -35,8 +35,8 @@ pub(crate) fn wheels(body: &Body) -> [(&'static str, Point); 4] {
 }
 
 /// A wheel around the origin that turns about y: lugs on the tyre and spokes on the rim show that it does.
-pub(crate) fn wheel(body: &Body) -> Mesh {
-    let (radius, half) = (body.wheel_radius_m, tyre_width_m(body) / 2.0);
+pub(crate) fn wheel(radius_m: f64, width_m: f64) -> Mesh {
+    let (radius, half) = (radius_m, width_m / 2.0);
     let at = |step: u32, radius: f64, y: f64| -> Point {
         let (sine, cosine) = (TAU * f64::from(step) / f64::from(STEPS)).sin_cos();
         [radius * cosine, y, radius * sine]
@@ -190,7 +190,7 @@ mod tests {
         let [x, y, z] = extent(&body(&measures));
         assert_eq!((x, z[1]), ([-3.0, 3.0], 3.5));
         assert!(y[0] >= -1.5 && y[1] <= 1.5 && z[0] > 0.0, "{y:?} {z:?}");
-        let [x, y, z] = extent(&wheel(&measures));
+        let [x, y, z] = extent(&wheel(measures.wheel_radius_m, tyre_width_m(&measures)));
         assert!([x, z].iter().flatten().all(|edge| (edge.abs() - 0.95).abs() < 0.01), "{x:?} {z:?}");
         let (_, left) = wheels(&measures)[0];
         assert!((left[1] + f64::from(y[1]) - 1.5).abs() < 1e-6, "the tyre ends at the outer width");

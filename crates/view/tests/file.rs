@@ -1,7 +1,7 @@
 //! What a written file holds, read back with Rerun's own decoder.
 
 use headland_trace::{Origin, Run, Trace};
-use headland_view::{Axis, Body, ForceArrow, Scene, ViewError, write};
+use headland_view::{Axis, Body, ForceArrow, Relief, Rig, RigWheel, Scene, Setting, ViewError, write};
 use rerun::external::re_log_encoding::DecoderApp;
 use rerun::external::re_log_types::StoreKind;
 use rerun::log::{Chunk, LogMsg};
@@ -92,7 +92,7 @@ fn written(scene: &Scene) -> Content {
 }
 
 fn scene<'a>(runs: &'a [Run], measured: &'a [Run]) -> Scene<'a> {
-    Scene { title: "Roll-out", runs, measured, forces: &FORCES, vehicle: BODY, ground: None }
+    Scene { title: "Roll-out", runs, measured, forces: &FORCES, vehicle: BODY, ground: None, settings: &[] }
 }
 
 #[test]
@@ -161,6 +161,133 @@ fn the_layout_is_put_into_force_once_and_the_eye_follows_the_first_vehicle() {
     assert!(content.layout.contains_key("/viewport") && content.layout.contains_key("/time_panel"));
     assert!(content.layout.keys().any(|entity| entity.ends_with("/EyeControls3D")));
     assert!(content.recording.contains_key("/world/runs/r1/modelled/vehicle/reach"));
+}
+
+/// Rises by 1 in 20 to the north.
+#[derive(Debug)]
+struct Hill;
+
+impl Relief for Hill {
+    fn height_m(&self, _: f64, north_m: f64) -> Option<f64> {
+        Some(0.05 * north_m)
+    }
+}
+
+const WHEELS: [(&str, f64, f64); 4] = [
+    ("axle_1_left", 1.6, 1.1),
+    ("axle_1_right", 1.6, -1.1),
+    ("axle_2_left", -1.7, 1.1),
+    ("axle_2_right", -1.7, -1.1),
+];
+
+fn rig() -> Rig {
+    let wheel = |(name, ahead, left): (&str, f64, f64)| RigWheel {
+        name: name.to_owned(),
+        hub_m: [ahead, left, 0.9],
+        radius_m: 0.95,
+        width_m: 0.7,
+        squeezed_m: 0.0,
+    };
+    Rig { centre_height_m: 1.2, wheels: WHEELS.map(wheel).into() }
+}
+
+/// Drives north up the hill for 20 s at 2 m/s, its wheels 40 mm deep, the front ones turned.
+fn rigid(id: &str) -> Run {
+    let times: Vec<f64> = (0..401).map(|index| f64::from(index) * 0.05).collect();
+    let north: Vec<f64> = times.iter().map(|time| 2.0 * time).collect();
+    let mut trace = Trace::new(times).unwrap();
+    let mut push = |name: &str, values: Vec<f64>| trace.push(name, values, Origin::Predicted).unwrap();
+    push("elevation_m", north.iter().map(|north| 0.05 * north).collect());
+    push("height_m", north.iter().map(|north| 0.05 * north + 1.16).collect());
+    push("north_m", north);
+    let constant = |value: f64| vec![value; 401];
+    push("east_m", constant(3.0));
+    push("speed_m_s", constant(2.0));
+    push("heading_rad", constant(0.0));
+    push("pitch_rad", constant(0.05f64.atan()));
+    push("roll_rad", constant(0.0));
+    for (name, ahead, _) in WHEELS {
+        let values = [
+            ("load_n", 3e4),
+            ("traction_n", 4e3),
+            ("resistance_n", 1e3),
+            ("side_force_n", 500.0),
+            ("sinkage_m", 0.04),
+            ("deflection_m", 0.05),
+            ("steer_rad", if ahead > 0.0 { 0.1 } else { 0.0 }),
+            ("slip", 0.1),
+        ];
+        for (what, value) in values {
+            push(&format!("{name}_{what}"), constant(value));
+        }
+    }
+    Run { id: id.to_owned(), trace }
+}
+
+fn settings(runs: &[Run]) -> Vec<Setting<'_>> {
+    runs.iter().map(|run| Setting { run: &run.id, rig: Some(rig()), relief: Some(&Hill) }).collect()
+}
+
+#[test]
+fn a_rigid_body_has_its_wheels_their_forces_its_balance_and_the_ground_around_it() {
+    let runs = [rigid("r1")];
+    let settings = settings(&runs);
+    let content = written(&Scene { forces: &[], settings: &settings, ..scene(&runs, &[]) });
+    let base = "/world/runs/r1/modelled";
+    for (wheel, _, _) in WHEELS {
+        assert_eq!(content.times_s(&format!("{base}/vehicle/wheels/{wheel}")).len(), 401);
+        assert_eq!(content.times_s(&format!("{base}/vehicle/wheel_forces/{wheel}")).len(), 401);
+        assert!(content.recording.contains_key(&format!("/channels/r1/{wheel}_load_n/modelled")));
+    }
+    assert!(
+        !content.recording.contains_key(&format!("{base}/vehicle/wheels/front_left")),
+        "no second wheels"
+    );
+    for what in ["vehicle/velocity", "centre_of_gravity", "centre_of_gravity/bar", "plumb_line"] {
+        assert_eq!(content.times_s(&format!("{base}/{what}")).len(), 401, "{what}");
+    }
+    assert!(content.recording.contains_key("/world/ground/r1/surface"));
+    assert!(content.recording.contains_key("/world/ground/r1/distance"));
+}
+
+/// They begin with nothing, grow with the vehicle, and no piece is there before the vehicle has come to it.
+#[test]
+fn ruts_grow_behind_the_vehicle() {
+    let runs = [rigid("r1")];
+    let settings = settings(&runs);
+    let content = written(&Scene { forces: &[], settings: &settings, ..scene(&runs, &[]) });
+    let pieces: Vec<Vec<f64>> = content
+        .recording
+        .keys()
+        .filter(|entity| entity.starts_with("/world/runs/r1/modelled/ruts/"))
+        .map(|entity| content.times_s(entity))
+        .collect();
+    assert!(pieces.len() > 20, "{}", pieces.len());
+    let firsts: Vec<f64> = pieces.iter().map(|times| times[0]).collect();
+    assert!(firsts[0] > 0.0 && firsts.windows(2).all(|pair| pair[0] < pair[1]), "{firsts:?}");
+    assert!(pieces.iter().all(|times| times.len() > 1 && times[times.len() - 1] - times[0] < 1.0));
+    assert!(pieces.last().unwrap().last().unwrap() - 20.0 < 1e-9);
+}
+
+#[test]
+fn rigid_bodies_of_a_study_each_have_a_ground_of_their_own() {
+    let runs = [rigid("r1"), rigid("r2")];
+    let settings = settings(&runs);
+    let content = written(&Scene { forces: &[], settings: &settings, ..scene(&runs, &[]) });
+    for id in ["r1", "r2"] {
+        assert!(content.recording.contains_key(&format!("/world/ground/{id}/surface")), "{id}");
+        assert!(!content.times_s(&format!("/world/runs/{id}/modelled/ruts/00")).is_empty(), "{id}");
+    }
+}
+
+#[test]
+fn a_rig_without_wheels_is_refused() {
+    let runs = [rigid("r1")];
+    let bare = [Setting { run: "r1", rig: Some(Rig { wheels: Vec::new(), ..rig() }), relief: None }];
+    let folder = tempfile::tempdir().unwrap();
+    let scene = Scene { forces: &[], settings: &bare, ..scene(&runs, &[]) };
+    let error = write(&scene, &folder.path().join("run.rrd")).unwrap_err();
+    assert!(matches!(error, ViewError::Body { name: "number of wheels", .. }), "{error}");
 }
 
 #[test]

@@ -180,3 +180,16 @@ fn a_row_of_wheels_and_twin_tyres_share_the_load_as_springs() {
     let by_hand = 0.5 * 25.0 * (MASS_KG + 900.0) / (0.07 * weight_n);
     assert!((last(&coasting, "position_m") / by_hand - 1.0).abs() < 0.01);
 }
+
+#[test]
+fn hubs_are_where_the_tyres_hold_them() {
+    let model = model(terrain::<Flat>("()"), soil::<Constant>("(coefficient: 0.05)"));
+    let hubs = crate::hubs(&model, &chassis()).unwrap();
+    let names: Vec<&str> = hubs.iter().map(|hub| hub.name.as_str()).collect();
+    assert_eq!(names, ["axle_1_left", "axle_1_right", "axle_2_left", "axle_2_right"]);
+    // Half of 2.0 m of 3.6 m of the weight, on a stiffness of 1e6 / (0.365 + 170 / 150) N/m.
+    let given_m = MASS_KG * GRAVITY * 2.0 / 3.6 / 2.0 * (0.365 + 170.0 / 150.0) / 1e6;
+    let expected = [1.6, 1.05, 1.0225 - given_m];
+    assert!(hubs[0].place_m.iter().zip(expected).all(|(at, wanted)| (at - wanted).abs() < 1e-12), "{hubs:?}");
+    assert_eq!((hubs[1].radius_m, hubs[1].width_m, hubs[1].squeezed_m), (1.0225, 0.9, 0.0));
+}

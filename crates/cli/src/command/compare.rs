@@ -5,7 +5,7 @@ use crate::failure::{Failure, interrupted};
 use crate::held::{self, Pair, ToldNotice};
 use crate::output::Output;
 use crate::page;
-use crate::picture;
+use crate::picture::{self, Drawn, Wanted};
 use crate::say::Say;
 use headland_compare::{Check, Requirement, Summary};
 use headland_plugin::Registry;
@@ -55,7 +55,8 @@ struct Required {
 pub fn compare(registry: &Registry, options: &CompareOptions, say: Say) -> Result<(), Failure> {
     let wanted: Vec<Requirement> =
         options.require.iter().map(|text| text.parse()).collect::<Result<_, _>>()?;
-    picture::possible(options.rerun || options.view)?;
+    let pictures = Wanted::of(options.picture);
+    pictures.possible()?;
     let scenario = Scenario::read(&options.held.scenario, registry)?;
     let recording = held::read_recording(&options.held.recording, say)?;
     let study = held::study(&scenario, &recording, registry)?;
@@ -84,8 +85,10 @@ pub fn compare(registry: &Registry, options: &CompareOptions, say: Say) -> Resul
         notes: &document.notes,
     })?;
     output.page("report.html", &page)?;
-    picture::draw(picture::Wanted::of(options.rerun, options.view), &scenario, &traces, &pairs, &mut output)?;
+    let drawn = Drawn { scenario: &scenario, registry, runs: &traces, pairs: &pairs };
+    let picture = picture::draw(pictures, &drawn, &mut output)?;
     say.result(&told(&scenario, &recording, &document, &checks, &output), &document)?;
+    picture.serve(say)?;
     if interrupted() {
         return Err(Failure::Interrupted);
     }

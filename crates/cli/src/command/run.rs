@@ -5,7 +5,7 @@ use crate::failure::{Failure, interrupted};
 use crate::held;
 use crate::output::Output;
 use crate::page;
-use crate::picture;
+use crate::picture::{self, Drawn, Wanted};
 use crate::say::Say;
 use headland_plugin::Registry;
 use headland_scenario::{Remark, RunSpec, Scenario};
@@ -58,7 +58,8 @@ impl Simulated {
 
 /// Runs the command.
 pub fn run(registry: &Registry, options: &RunOptions, say: Say) -> Result<(), Failure> {
-    picture::possible(options.rerun || options.view)?;
+    let pictures = Wanted::of(options.picture);
+    pictures.possible()?;
     let scenario = Scenario::read(&options.scenario, registry)?;
     let mut output = Output::new(options.out.as_deref(), &options.scenario)?;
     let begin = Instant::now();
@@ -68,8 +69,10 @@ pub fn run(registry: &Registry, options: &RunOptions, say: Say) -> Result<(), Fa
     output.traces("trace.parquet", &traces)?;
     output.json("summary.json", &simulated.summary)?;
     output.page("report.html", &page::run::page(&scenario, &simulated.runs, &simulated.summary.remarks)?)?;
-    picture::draw(picture::Wanted::of(options.rerun, options.view), &scenario, &traces, &[], &mut output)?;
+    let drawn = Drawn { scenario: &scenario, registry, runs: &traces, pairs: &[] };
+    let picture = picture::draw(pictures, &drawn, &mut output)?;
     say.result(&told(&scenario, &simulated.summary, took_ms, &output), &simulated.summary)?;
+    picture.serve(say)?;
     if interrupted() {
         return Err(Failure::Interrupted);
     }

@@ -1,0 +1,86 @@
+//! What is drawn around runs: the wheels of rigid bodies, and the ground of their terrains.
+
+use crate::failure::Failure;
+use headland_body::hubs;
+use headland_plugin::{Place, Registry, Surface};
+use headland_scenario::{Fidelity, RunSpec, Scenario};
+use headland_sim::Model;
+use headland_trace::Run;
+use headland_view::{Body, Relief, Rig, RigWheel, Setting};
+
+/// One run and what it was driven with.
+#[derive(Debug)]
+pub struct Stage {
+    run: String,
+    /// Its wheels, where it is a rigid body.
+    pub rig: Option<Rig>,
+    model: Model,
+}
+
+/// Heights and soils of a model.
+impl Relief for Stage {
+    fn height_m(&self, east_m: f64, north_m: f64) -> Option<f64> {
+        self.surface()?.spot(east_m, north_m).map(|spot| spot.height_m)
+    }
+
+    fn kind(&self, east_m: f64, north_m: f64) -> Option<&str> {
+        self.model.soil.as_ref()?.called(&Place { east_m, north_m, ..Place::default() })
+    }
+}
+
+impl Stage {
+    fn surface(&self) -> Option<&dyn Surface> {
+        self.model.terrain.surface()
+    }
+
+    /// As the picture takes it.
+    pub fn setting(&self) -> Setting<'_> {
+        let relief = self.surface().map(|_| self as &dyn Relief);
+        Setting { run: &self.run, rig: self.rig.clone(), relief }
+    }
+}
+
+/// What each of the runs was driven with.
+pub fn stages(scenario: &Scenario, registry: &Registry, runs: &[Run]) -> Result<Vec<Stage>, Failure> {
+    let stage = |run: &Run| {
+        let own = RunSpec { id: run.id.clone(), with: Vec::new() };
+        let spec = scenario.runs.iter().find(|spec| spec.id == run.id).unwrap_or(&own);
+        let scenario = scenario.run(spec, registry)?;
+        let model = scenario.model(registry)?;
+        let rig = match &scenario.fidelity {
+            Fidelity::Longitudinal => None,
+            Fidelity::RigidBody { chassis, .. } => {
+                let hubs = hubs(&model, chassis).map_err(|error| Failure::Machine(error.to_string()))?;
+                let wheels = hubs.into_iter().map(|hub| RigWheel {
+                    name: hub.name,
+                    hub_m: hub.place_m,
+                    radius_m: hub.radius_m,
+                    width_m: hub.width_m,
+                    squeezed_m: hub.squeezed_m,
+                });
+                let height_m = model.axles.as_ref().map_or(0.0, |axles| axles.centre_of_gravity_height_m);
+                Some(Rig { centre_height_m: height_m, wheels: wheels.collect() })
+            }
+        };
+        Ok(Stage { run: run.id.clone(), rig, model })
+    };
+    runs.iter().map(stage).collect()
+}
+
+/// A vehicle that goes with its wheels; beside those a picture, no input of any model.
+pub fn body(rig: &Rig) -> Body {
+    let along = || rig.wheels.iter().map(|wheel| wheel.hub_m[0]);
+    let wheelbase_m = along().fold(f64::MIN, f64::max) - along().fold(f64::MAX, f64::min);
+    let radius_m = rig.wheels.iter().map(|wheel| wheel.radius_m).fold(0.0, f64::max);
+    let aside = |add_m: &dyn Fn(&RigWheel) -> f64| {
+        rig.wheels.iter().map(|wheel| 2.0 * wheel.hub_m[1].abs() + add_m(wheel)).fold(0.0, f64::max)
+    };
+    Body {
+        length_m: wheelbase_m + 2.9 * radius_m,
+        width_m: aside(&|wheel| wheel.width_m),
+        height_m: 3.7 * radius_m,
+        wheel_radius_m: radius_m,
+        wheelbase_m: wheelbase_m.max(radius_m),
+        track_m: aside(&|_| 0.0).max(radius_m),
+    }
+}

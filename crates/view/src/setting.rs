@@ -1,0 +1,81 @@
+//! What is known of a run beside its trace: the wheels of a rigid body, and the ground around it.
+
+use crate::ViewError;
+use std::fmt::Debug;
+
+/// Ground over the map.
+pub trait Relief: Debug {
+    /// Height at a point of the map [m], in the frame of the runs' `elevation_m`; `None` where nothing is known.
+    fn height_m(&self, east_m: f64, north_m: f64) -> Option<f64>;
+
+    /// What the ground is there; `None` where it is the same everywhere.
+    fn kind(&self, east_m: f64, north_m: f64) -> Option<&str> {
+        let _ = (east_m, north_m);
+        None
+    }
+}
+
+/// A wheel, or tyres side by side.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigWheel {
+    /// As its channels begin: `axle_1_left`.
+    pub name: String,
+    /// Its hub at rest on level ground: ahead and to the left of the centre of gravity, above the ground [m].
+    pub hub_m: [f64; 3],
+    /// Radius without load [m].
+    pub radius_m: f64,
+    /// Over all its tyres [m].
+    pub width_m: f64,
+    /// How far its suspension is squeezed there [m]; 0 where it has none.
+    pub squeezed_m: f64,
+}
+
+/// A vehicle whose trace says how it stands: `height_m` of its centre of gravity, `roll_rad`, `pitch_rad` and `heading_rad`,
+/// and of each wheel the channels that begin with its name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rig {
+    /// Height of the centre of gravity above the ground at rest on level ground [m].
+    pub centre_height_m: f64,
+    /// Its wheels.
+    pub wheels: Vec<RigWheel>,
+}
+
+impl Rig {
+    /// How far the middle of its wheels is ahead of the centre of gravity [m], and how much lower their hubs are than those of
+    /// wheels of this radius without load.
+    pub(crate) fn seat_m(&self, radius_m: f64) -> [f64; 3] {
+        let along = || self.wheels.iter().map(|wheel| wheel.hub_m[0]);
+        let (first, last) = (along().fold(f64::MIN, f64::max), along().fold(f64::MAX, f64::min));
+        let hubs_m = self.wheels.iter().map(|wheel| wheel.hub_m[2]).sum::<f64>() / self.wheels.len() as f64;
+        [first.midpoint(last), 0.0, hubs_m - radius_m]
+    }
+}
+
+/// What is known of one run.
+#[derive(Clone, Debug)]
+pub struct Setting<'a> {
+    /// The run.
+    pub run: &'a str,
+    /// Its wheels, where it is a rigid body; else four wheels as large as those of the scene's vehicle roll below it.
+    pub rig: Option<Rig>,
+    /// Its ground; where nothing is known of it, the ground of the scene.
+    pub relief: Option<&'a dyn Relief>,
+}
+
+impl Setting<'_> {
+    /// # Errors
+    /// [`ViewError::Body`] for measures that cannot be.
+    pub(crate) fn check(&self) -> Result<(), ViewError> {
+        let Some(rig) = &self.rig else { return Ok(()) };
+        let Some(first) = rig.wheels.first() else {
+            return Err(ViewError::Body { name: "number of wheels", found: 0.0 });
+        };
+        let positive = [("centre_height_m", rig.centre_height_m), ("radius_m", first.radius_m)];
+        let wheels =
+            rig.wheels.iter().flat_map(|wheel| [("radius_m", wheel.radius_m), ("width_m", wheel.width_m)]);
+        match positive.into_iter().chain(wheels).find(|(_, found)| !(*found > 0.0 && found.is_finite())) {
+            Some((name, found)) => Err(ViewError::Body { name, found }),
+            None => Ok(()),
+        }
+    }
+}

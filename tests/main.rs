@@ -20,8 +20,14 @@ mod managements;
 mod models;
 #[path = "whole/scenarios.rs"]
 mod scenarios;
+#[path = "whole/schema.rs"]
+mod schema;
 #[path = "whole/snippets.rs"]
 mod snippets;
+#[path = "whole/terrain_files.rs"]
+mod terrain_files;
+#[path = "whole/terrain_formulas.rs"]
+mod terrain_formulas;
 #[path = "whole/terrains.rs"]
 mod terrains;
 #[path = "whole/wheels.rs"]

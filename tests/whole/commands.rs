@@ -33,7 +33,7 @@ fn commands() -> Vec<(Block, Vec<String>)> {
     found
 }
 
-/// As a shell splits a line: at spaces outside double quotes, up to a comment.
+/// As a shell splits a line: at spaces outside double quotes, up to a comment or to where it is written to.
 fn words_of(line: &str) -> Vec<String> {
     let mut words = Vec::new();
     for (index, piece) in line.split('"').enumerate() {
@@ -43,8 +43,8 @@ fn words_of(line: &str) -> Vec<String> {
             words.extend(piece.split_whitespace().map(str::to_owned));
         }
     }
-    let comment = words.iter().position(|word| word == "#").unwrap_or(words.len());
-    words.truncate(comment);
+    let end = words.iter().position(|word| word == "#" || word == ">").unwrap_or(words.len());
+    words.truncate(end);
     words
 }
 

@@ -61,6 +61,8 @@ pub enum Command {
     Validate(ValidateOptions),
     /// List the models that scenarios can name, with their parameters, equations and sources
     Plugins(PluginsOptions),
+    /// Print what scenario files look like, for editors: a JSON schema, or snippets
+    Schema(SchemaOptions),
 }
 
 /// Options of `headland run`.
@@ -252,6 +254,14 @@ pub struct CheckOptions {
     /// Scenarios and recording descriptions
     #[arg(value_name = "FILE.ron", required = true)]
     pub files: Vec<PathBuf>,
+}
+
+/// Options of `headland schema`.
+#[derive(Args, Debug)]
+pub struct SchemaOptions {
+    /// Snippets in the format of Visual Studio Code instead
+    #[arg(long)]
+    pub snippets: bool,
 }
 
 /// Options of `headland plugins`.

@@ -23,9 +23,12 @@ mod picture;
 mod say;
 #[cfg(feature = "rerun")]
 mod scenery;
+mod schema;
 mod staged;
 mod study_input;
 mod validation;
+
+pub use schema::{schema, snippets};
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -88,6 +91,7 @@ fn begin(registry: &Registry, arguments: &Arguments, say: Say) -> Result<(), Fai
         Command::Validate(options) => {
             command::validate::validate(registry, options, arguments.common.seed, say)
         }
+        Command::Schema(options) => command::schema::run(registry, options, say),
         Command::Plugins(options) => command::plugins::plugins(registry, options, say),
     }
 }

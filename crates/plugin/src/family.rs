@@ -1,6 +1,6 @@
 //! The models of one kind, by name.
 
-use crate::{Card, Plugin, Refusal};
+use crate::{Card, Form, Plugin, Refusal};
 use std::path::Path;
 
 /// How a model is read from the text of its parameters.
@@ -11,6 +11,14 @@ pub struct Entry<T: ?Sized> {
     /// How it describes itself.
     pub card: Card,
     build: Build<T>,
+    form: fn() -> Form,
+}
+
+impl<T: ?Sized> Entry<T> {
+    /// What its parameters look like.
+    pub fn form(&self) -> Form {
+        (self.form)()
+    }
 }
 
 /// Models of one kind.
@@ -68,13 +76,13 @@ impl<T: ?Sized> Family<T> {
         &self.entries
     }
 
-    /// Adds a model that `build` reads.
+    /// Adds a model that `build` reads and whose parameters look like `form`.
     ///
     /// # Panics
     /// Where the name is taken: that is a bug of the program, not of its user.
-    pub fn insert(&mut self, card: Card, build: Build<T>) {
+    pub fn insert(&mut self, card: Card, build: Build<T>, form: fn() -> Form) {
         assert!(self.card(card.name).is_none(), "a {} named `{}` is registered twice", self.kind, card.name);
-        self.entries.push(Entry { card, build });
+        self.entries.push(Entry { card, build, form });
     }
 
     /// How the model of this name describes itself.

@@ -4,10 +4,12 @@
 //! A model is a pure function of its arguments: it sees no clock, no file while running, and keeps no history. What it
 //! remembers it declares as states, which the simulation integrates.
 
+mod asking;
 mod card;
 mod driveline;
 mod effect;
 mod family;
+mod form;
 mod management;
 mod registry;
 mod situation;
@@ -22,6 +24,7 @@ pub use card::{Bound, Card, Parameter, parameter};
 pub use driveline::{Delivery, Demand, Driveline, MAX_LOSSES, Readings, Shaft};
 pub use effect::{Action, Effect};
 pub use family::{BuildError, Entry, Family, closest};
+pub use form::{Field, Form, form_of};
 pub use management::{Consequence, Management, Outlook, Share, Stores};
 pub use registry::{Kind, Registry};
 pub use situation::{Air, Situation};

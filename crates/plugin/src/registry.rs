@@ -1,7 +1,7 @@
 //! Every model that a program knows.
 
 use crate::family::read;
-use crate::{Card, Driveline, Effect, Family, Management, Plugin, Soil, Task, Terrain};
+use crate::{Card, Driveline, Effect, Family, Form, Management, Plugin, Soil, Task, Terrain, form_of};
 
 /// The kinds of plugin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,38 +75,53 @@ impl Registry {
 
     /// Registers a soil model.
     pub fn soil<P: Plugin + Soil>(&mut self) {
-        self.soils.insert(P::CARD, |text, folder| Ok(Box::new(read::<P>(text, folder)?)));
+        self.soils.insert(P::CARD, |text, folder| Ok(Box::new(read::<P>(text, folder)?)), form_of::<P>);
     }
 
     /// Registers a terrain.
     pub fn terrain<P: Plugin + Terrain>(&mut self) {
-        self.terrains.insert(P::CARD, |text, folder| Ok(Box::new(read::<P>(text, folder)?)));
+        self.terrains.insert(P::CARD, |text, folder| Ok(Box::new(read::<P>(text, folder)?)), form_of::<P>);
     }
 
     /// Registers a driveline.
     pub fn driveline<P: Plugin + Driveline>(&mut self) {
-        self.drivelines.insert(P::CARD, |text, folder| Ok(Box::new(read::<P>(text, folder)?)));
+        self.drivelines.insert(P::CARD, |text, folder| Ok(Box::new(read::<P>(text, folder)?)), form_of::<P>);
     }
 
     /// Registers a management.
     pub fn management<P: Plugin + Management>(&mut self) {
-        self.managements.insert(P::CARD, |text, folder| Ok(Box::new(read::<P>(text, folder)?)));
+        self.managements.insert(P::CARD, |text, folder| Ok(Box::new(read::<P>(text, folder)?)), form_of::<P>);
     }
 
     /// Registers a task.
     pub fn task<P: Plugin + Task>(&mut self) {
-        self.tasks.insert(P::CARD, |text, folder| Ok(Box::new(read::<P>(text, folder)?)));
+        self.tasks.insert(P::CARD, |text, folder| Ok(Box::new(read::<P>(text, folder)?)), form_of::<P>);
     }
 
     /// Registers an effect.
     pub fn effect<P: Plugin + Effect>(&mut self) {
-        self.effects.insert(P::CARD, |text, folder| Ok(Box::new(read::<P>(text, folder)?)));
+        self.effects.insert(P::CARD, |text, folder| Ok(Box::new(read::<P>(text, folder)?)), form_of::<P>);
     }
 
     /// The cards of one kind, in the order in which they were registered.
     pub fn cards(&self, kind: Kind) -> Vec<&Card> {
         fn of<T: ?Sized>(family: &Family<T>) -> Vec<&Card> {
             family.entries().iter().map(|entry| &entry.card).collect()
+        }
+        match kind {
+            Kind::Soil => of(&self.soils),
+            Kind::Terrain => of(&self.terrains),
+            Kind::Driveline => of(&self.drivelines),
+            Kind::Management => of(&self.managements),
+            Kind::Task => of(&self.tasks),
+            Kind::Effect => of(&self.effects),
+        }
+    }
+
+    /// The cards of one kind, each with what its parameters look like.
+    pub fn forms(&self, kind: Kind) -> Vec<(&Card, Form)> {
+        fn of<T: ?Sized>(family: &Family<T>) -> Vec<(&Card, Form)> {
+            family.entries().iter().map(|entry| (&entry.card, entry.form())).collect()
         }
         match kind {
             Kind::Soil => of(&self.soils),

@@ -32,7 +32,7 @@ pub struct TyreFile {
 }
 
 /// Bounds of the numbers of an axle, by the path from it.
-const BOUNDS: [(&str, Bound); 9] = [
+pub const BOUNDS: [(&str, Bound); 9] = [
     ("position_m", Bound::Within(-50.0, 50.0)),
     ("track_m", Bound::Within(0.0, 20.0)),
     ("lead", Bound::Within(0.5, 2.0)),

@@ -112,7 +112,7 @@ impl Fidelity {
 }
 
 /// Bounds of the numbers of a body.
-const BOUNDS: [(&str, Bound); 9] = [
+pub const BOUNDS: [(&str, Bound); 9] = [
     ("roll_inertia_kg_m2", Bound::Positive),
     ("pitch_inertia_kg_m2", Bound::Positive),
     ("yaw_inertia_kg_m2", Bound::Positive),
@@ -125,7 +125,7 @@ const BOUNDS: [(&str, Bound); 9] = [
 ];
 
 /// Bounds of those of each of its axles.
-const AXLE_BOUNDS: [(&str, Bound); 7] = [
+pub const AXLE_BOUNDS: [(&str, Bound); 7] = [
     ("damping_n_s_m", Bound::NotNegative),
     ("friction", Bound::Within(0.01, 3.0)),
     ("slip_stiffness", Bound::Positive),

@@ -174,6 +174,62 @@ fn driver(document: &Document) -> Result<(f64, Option<Pi>), ScenarioError> {
     Ok((DRIVER_GAIN_PER_S, Some(Pi { gain_per_s, integral_per_s2, integral_limit_m_s2, preview_s })))
 }
 
+/// What phases, cycles and drivers look like.
+pub mod forms {
+    use super::{BESIDE, CycleFile, EngineSpeedFile, KnowingFile, MODES, PhaseFile, PiFile};
+    use headland_plugin::{Field, Form, form_of};
+
+    /// A list of phases, or a cycle that brings its tasks.
+    pub fn cycle() -> Form {
+        let tasks = || Box::new(Form::Named("task"));
+        let mut own = form_of::<CycleFile>();
+        for (path, form) in [
+            ("tasks", Form::Either(vec![Form::List(tasks()), Form::Map(tasks())])),
+            ("phases", Form::Named("phases")),
+        ] {
+            if let Some(part) = own.find(path) {
+                *part = form;
+            }
+        }
+        Form::Either(vec![Form::Named("phases"), own])
+    }
+
+    /// A phase, with what any may say beside.
+    pub fn phase() -> Form {
+        let Form::Choice(mut phases) = form_of::<PhaseFile>() else { return Form::Any };
+        for form in phases.iter_mut().filter_map(|(_, form)| form.as_mut()) {
+            for (path, of) in [("until", "until"), ("phases", "phases")] {
+                if let Some(part) = form.find(path) {
+                    *part = Form::Named(of);
+                }
+            }
+            if let Form::Fields(fields) = form {
+                fields.extend(BESIDE.map(beside));
+            }
+        }
+        Form::Choice(phases)
+    }
+
+    fn beside(name: &str) -> Field {
+        let form = match name {
+            "name" => Form::Text,
+            "when" => Form::Named("until"),
+            "engine_speed_rad_s" => Form::Either(vec![Form::Number, form_of::<EngineSpeedFile>()]),
+            _ => {
+                debug_assert!(MODES.iter().any(|(mode, _)| *mode == name));
+                Form::List(Box::new(Form::Text))
+            }
+        };
+        Field { name: name.to_owned(), required: false, form }
+    }
+
+    /// A driver who knows the resistances, or one who does not.
+    pub fn driver() -> Form {
+        let pi = Form::Choice(vec![("Pi".to_owned(), Some(form_of::<PiFile>()))]);
+        Form::Either(vec![form_of::<KnowingFile>(), pi])
+    }
+}
+
 /// Phases one after the other.
 struct Plan<'m> {
     folder: &'m Path,

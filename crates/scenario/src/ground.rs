@@ -42,6 +42,23 @@ pub fn soil(
     Ok(soil)
 }
 
+/// What to say of a soil that knows whole vehicles only, below a vehicle that stands on axles.
+pub fn beside_axles(document: &Document, soil: &dyn Soil) -> Option<Remark> {
+    if soil.needs_axles() || soil.needs_soils() {
+        return None;
+    }
+    let node = document.find("ground.soil")?;
+    let name = node.name(document.text()).unwrap_or("the soil");
+    let text = format!(
+        "`{name}` knows whole vehicles only: on it the tyres of `axles` change nothing and no wheel slips; {PER_WHEEL} speak of \
+         single wheels"
+    );
+    Some(Remark { text, at: document.location(node.span.start) })
+}
+
+/// The soils that the remark names.
+const PER_WHEEL: &str = "`Brixius`, `WismerLuth`, `Bekker` and `WongReece`";
+
 #[cfg(test)]
 mod tests {
     use crate::Scenario;
@@ -73,6 +90,35 @@ mod tests {
             Scenario::of_text("test.ron", GOOD, Path::new(""), &headland_stock::registry()).unwrap();
         let soil = scenario.model(&headland_stock::registry()).unwrap().soil.unwrap();
         assert!(!soil.needs_axles() && soil.needs_soils());
+    }
+
+    /// The tyres would not be looked at, which is no error and yet seldom meant.
+    #[test]
+    fn axles_on_a_soil_of_whole_vehicles_are_remarked_upon() {
+        let axle = |at: f64| {
+            format!(
+                "(position_m: {at}, track_m: 2, wheels: 2, lead: 1, tyre: (width_m: 0.5, diameter_m: 1.7, section_height_m: 0.3, \
+                 inflation_pa: 1e5, carcass_pa: 0))"
+            )
+        };
+        let axles = format!(
+            "drag_area_m2: 5, axles: [{}, {}], centre_of_gravity_height_m: 1, hitch_height_m: 0.5, slip_limit: 0.5,",
+            axle(1.5),
+            axle(-1.0)
+        );
+        let remarks = |soil: &str| {
+            let start = GOOD.find("Zones(").unwrap();
+            let end = GOOD.find("        ),\n        air:").unwrap();
+            let text = GOOD.replace(&GOOD[start..end], soil).replace("drag_area_m2: 5,", &axles);
+            let scenario = Scenario::of_text("test.ron", &text, Path::new(""), &headland_stock::registry());
+            scenario.unwrap_or_else(|error| panic!("{}", error.told())).remarks
+        };
+        let told = remarks("Constant(coefficient: 0.05),\n");
+        assert_eq!(told.len(), 1, "{told:?}");
+        assert!(told[0].text.starts_with("`Constant` knows whole vehicles only"), "{told:?}");
+        assert_eq!(told[0].at.to_string(), "test.ron:6:19", "{told:?}");
+        let per_wheel = "Brixius(cone_index_pa: 9e5, construction: Radial, pass_factor: 1.5),\n";
+        assert!(remarks(per_wheel).is_empty());
     }
 
     #[test]

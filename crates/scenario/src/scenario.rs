@@ -9,7 +9,7 @@ use crate::error::ScenarioError;
 use crate::fault;
 use crate::ground;
 use crate::plugins::{Remark, bounded, build, build_all};
-use crate::schema::{DriveFile, InputFile, ScenarioFile};
+use crate::schema::{DriveFile, FidelityFile, InputFile, ScenarioFile};
 use crate::tree::{Node, Shape};
 use headland_plugin::{Air, Bound, Registry};
 use headland_sim::{Cycle, Drive, Inputs, Model, Resistance, Vehicle};
@@ -311,6 +311,9 @@ fn model(
         (None, false) => return Err(missing("ground", "ground", "soil")),
     };
     let axles = axles(document, &file.vehicle, soil.as_deref())?;
+    if let (Some(_), Some(soil), FidelityFile::Longitudinal) = (&axles, &soil, file.simulation.fidelity) {
+        remarks.extend(ground::beside_axles(document, soil.as_ref()));
+    }
     let driveline =
         document.find("vehicle.driveline").ok_or_else(|| missing("vehicle", "vehicle", "driveline"))?;
     let more = "headland plugins driveline";

@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "end of a phase")]
-enum UntilFile {
+pub enum UntilFile {
     Stopped,
     SpeedBelow { speed_m_s: f64 },
     SpeedAbove { speed_m_s: f64 },

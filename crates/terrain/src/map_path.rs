@@ -74,6 +74,36 @@ enum Way {
 
 const NAMES: &[&str] = &["Straight", "AbLines", "Spiral", "Points", "Route"];
 
+/// Fields of each way, in the order of the names: what `deserialize_struct` would ask for.
+const FIELDS: [&[&str]; 5] = [
+    &["heading_rad", "length_m"],
+    &[
+        "heading_rad",
+        "length_m",
+        "spacing_m",
+        "lanes",
+        "side",
+        "turn_radius_m",
+        "turn_ramp_m",
+        "grade",
+        "uphill_rad",
+    ],
+    &[
+        "heading_rad",
+        "length_m",
+        "breadth_m",
+        "spacing_m",
+        "rounds",
+        "clockwise",
+        "turn_radius_m",
+        "turn_ramp_m",
+        "grade",
+        "uphill_rad",
+    ],
+    &["points"],
+    &["file", "spacing_m", "latitude_deg", "longitude_deg"],
+];
+
 /// Written as `AbLines(heading_rad: ...)`, with the parameters of the terrain of that name.
 impl<'de> Deserialize<'de> for MapPath {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -86,12 +116,14 @@ impl<'de> Deserialize<'de> for MapPath {
             }
 
             fn visit_enum<A: EnumAccess<'de>>(self, data: A) -> Result<MapPath, A::Error> {
-                match data.variant::<Way>()? {
-                    (Way::Straight, way) => fields(way).map(MapPath::Straight),
-                    (Way::AbLines, way) => fields(way).map(MapPath::AbLines),
-                    (Way::Spiral, way) => fields(way).map(MapPath::Spiral),
-                    (Way::Points, way) => fields(way).map(MapPath::Points),
-                    (Way::Route, way) => fields(way).map(MapPath::Route),
+                let (way, own) = data.variant::<Way>()?;
+                let of = FIELDS[way as usize];
+                match way {
+                    Way::Straight => fields(own, of).map(MapPath::Straight),
+                    Way::AbLines => fields(own, of).map(MapPath::AbLines),
+                    Way::Spiral => fields(own, of).map(MapPath::Spiral),
+                    Way::Points => fields(own, of).map(MapPath::Points),
+                    Way::Route => fields(own, of).map(MapPath::Route),
                 }
             }
         }
@@ -100,7 +132,10 @@ impl<'de> Deserialize<'de> for MapPath {
 }
 
 /// The parameters of a way, between its parentheses.
-fn fields<'de, A: VariantAccess<'de>, T: DeserializeOwned>(way: A) -> Result<T, A::Error> {
+fn fields<'de, A: VariantAccess<'de>, T: DeserializeOwned>(
+    way: A,
+    names: &'static [&'static str],
+) -> Result<T, A::Error> {
     struct Fields<T>(PhantomData<T>);
     impl<'de, T: DeserializeOwned> Visitor<'de> for Fields<T> {
         type Value = T;
@@ -113,7 +148,7 @@ fn fields<'de, A: VariantAccess<'de>, T: DeserializeOwned>(way: A) -> Result<T, 
             T::deserialize(MapAccessDeserializer::new(map))
         }
     }
-    way.struct_variant(&[], Fields(PhantomData))
+    way.struct_variant(names, Fields(PhantomData))
 }
 
 /// A line on the map.
@@ -276,5 +311,26 @@ pub(crate) fn on_ground(pose: &Pose, height_m: f64, rise: f64) -> Place {
         curvature_per_m: pose.curvature * cos_slope,
         east_m: pose.east_m,
         north_m: pose.north_m,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use headland_plugin::{Form, form_of};
+
+    #[test]
+    fn each_way_asks_for_the_fields_that_it_has() {
+        let own = [
+            form_of::<Straight>(),
+            form_of::<UpAndDown>(),
+            form_of::<Around>(),
+            form_of::<Points>(),
+            form_of::<Track>(),
+        ];
+        let Form::Choice(ways) = form_of::<MapPath>() else { panic!("a choice") };
+        for ((name, form), (own, known)) in ways.into_iter().zip(own.into_iter().zip(NAMES)) {
+            assert_eq!((name.as_str(), form), (*known, Some(own)));
+        }
     }
 }

@@ -10,5 +10,6 @@ pub mod demo;
 pub mod diagnose;
 pub mod plugins;
 pub mod run;
+pub mod schema;
 pub mod terrain;
 pub mod validate;

@@ -2,10 +2,11 @@
 
 mod buggy;
 mod car;
+mod drive;
+mod fuelled;
 mod study;
 mod table;
 mod tractor;
-mod truck;
 mod vehicle;
 
 use crate::failure::Failure;
@@ -17,9 +18,11 @@ use std::path::Path;
 pub fn page(registry: &Registry, scenarios: &Path, seed: u64, say: Say) -> Result<String, Failure> {
     let parts = [
         car::part(registry, scenarios, say)?,
-        truck::part(registry, scenarios, say)?,
+        fuelled::truck(registry, scenarios, say)?,
+        fuelled::camry(registry, scenarios, say)?,
         tractor::part(scenarios, say)?,
         study::part(registry, scenarios, seed, say)?,
+        drive::part(registry, scenarios)?,
         buggy::part(scenarios, seed, say)?,
     ];
     Ok(format!("{}\n{}", INTRODUCTION, parts.join("\n")))

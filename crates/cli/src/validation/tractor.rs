@@ -196,8 +196,6 @@ fn verdict(log: &Log, passes: &[Range<usize>], line: [f64; 2], errors: &[f64]) -
         "- outside of the passes (turns, road, idling), which calibrated nothing, by {} % together",
         sum(&mut (0..log.time_s.len()).filter(others), line)
     );
-    text += "- torque and fuel are both values of the engine's controller: this shows that one line describes the controller's \
-             fuel, not that the fuel is right\n";
     text
 }
 

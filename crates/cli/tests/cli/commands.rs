@@ -30,6 +30,8 @@ fn json_on_standard_output_is_the_document_and_nothing_else() {
     assert_eq!(document, place.json("out/summary.json"));
     for arguments in [
         &["plugins", "--json"][..],
+        &["schema"],
+        &["schema", "--snippets"],
         &["demo", "--list", "--json"],
         &["check", &place.path("scenario.ron"), "--json"],
     ] {
@@ -222,4 +224,32 @@ fn a_calibration_has_the_same_bits_at_any_number_of_threads() {
         std::fs::read(out.path().join("calibration.json")).unwrap()
     };
     assert_eq!(make("1"), make("2"));
+}
+
+/// 3 % over the first 500 m of the path are 500 sin(atan 0.03) = 14.993 m of height.
+#[test]
+fn terrain_tells_the_ground_in_words() {
+    let place = Place::new();
+    let on = |terrain: &str| {
+        place.write(
+            "ground.ron",
+            &super::help::SCENARIO.replace("terrain: Flat", &format!("terrain: {terrain}")),
+        );
+        done(&["terrain", &place.path("ground.ron")])
+    };
+    assert_eq!(
+        on("ConstantGrade(grade: 0.03, heading_rad: 0)"),
+        "a cart rolls out\n  path     without an end; its first 500 m are told\n  height   0 m to 14.99 m, 14.99 m climbed\n  \
+         grade    at most 3.0 % up, 0.0 % down\n"
+    );
+    assert_eq!(
+        on(
+            "Profile(heading_rad: 0, points: [(position_m: 0, elevation_m: 2), (position_m: 80, elevation_m: 2)])"
+        ),
+        "a cart rolls out\n  path     80 m\n  height   2 m to 2 m, 0 m climbed\n  grade    at most 0.0 % up, 0.0 % down\n"
+    );
+    let lanes = on(
+        "AbLines(heading_rad: 0, length_m: 100, spacing_m: 12, lanes: 3, side: Right, turn_radius_m: 6, turn_ramp_m: 4)",
+    );
+    assert!(lanes.contains("  bends    down to 6 m\n  marks    turn × 2, lane × 2\n"), "{lanes}");
 }

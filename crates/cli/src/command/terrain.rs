@@ -166,6 +166,14 @@ fn sampled(surface: &dyn Surface, places: &[Place]) -> Ground {
     }
 }
 
+/// Heights below this are rounding [m].
+const ROUNDING_M: f64 = 1e-6;
+
+/// A height for people.
+fn height(height_m: f64) -> String {
+    quantity(if height_m.abs() < ROUNDING_M { 0.0 } else { height_m }, "m")
+}
+
 fn in_words(told: &Told, picture: Option<&Path>) -> String {
     let mut text = format!("{}\n", told.about);
     let _ = match told.extent_m {
@@ -178,9 +186,9 @@ fn in_words(told: &Told, picture: Option<&Path>) -> String {
     let _ = writeln!(
         text,
         "  height   {} to {}, {} climbed",
-        quantity(told.lowest_m, "m"),
-        quantity(told.highest_m, "m"),
-        quantity(told.climbed_m, "m")
+        height(told.lowest_m),
+        height(told.highest_m),
+        height(told.climbed_m)
     );
     let _ = writeln!(
         text,

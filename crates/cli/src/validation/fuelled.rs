@@ -47,10 +47,7 @@ pub fn camry(registry: &Registry, scenarios: &Path, say: Say) -> Result<String, 
         say,
     )?;
     let mut text = before_and_after(&told);
-    text += &what_is_left(
-        &told,
-        "The rest is gears, which the model does not shift, the engine's temperature and the fuel that it cuts off.",
-    );
+    text += &what_is_left(&told, "The model shifts no gears and knows no temperature of the engine.");
     text.push('\n');
     if let Some(cold) = told.after.iter().find(|pair| pair.comparison.run == COLD_RUN) {
         text += &cold_start(cold);

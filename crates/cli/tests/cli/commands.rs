@@ -235,7 +235,7 @@ fn terrain_tells_the_ground_in_words() {
             "ground.ron",
             &super::help::SCENARIO.replace("terrain: Flat", &format!("terrain: {terrain}")),
         );
-        done(&["terrain", &place.path("ground.ron")])
+        done(&["terrain", &place.path("ground.ron")]).replace('\u{a0}', " ")
     };
     assert_eq!(
         on("ConstantGrade(grade: 0.03, heading_rad: 0)"),

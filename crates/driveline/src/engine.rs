@@ -14,7 +14,7 @@
 //! to, at most as fast as the full-load curve reaches. Leaves out inertia of the crankshaft, cold starts and altitude.
 
 use crate::full_load::{FullLoad, Point};
-use crate::parts::{crossing, hold, increasing, place, refuse, rising_zero};
+use crate::parts::{crossing, hold, increasing, place, refuse};
 use headland_plugin::{Bound, Parameter, Refusal, parameter};
 use serde::Deserialize;
 use std::f64::consts::PI;
@@ -361,7 +361,7 @@ impl Engine {
         let takes = |speed: f64| self.friction_w(speed, at.friction_n_m) + self.accessories_w(speed);
         let (idle, last) = (self.idle_speed_rad_s, self.curve.last_speed());
         if net_w + takes(idle) < 0.0 {
-            return rising_zero(last, idle, |speed| -net_w - takes(speed));
+            return crossing(last, idle, |speed| -net_w - takes(speed));
         }
         let share = self.load_share.min(self.limit(at.boost));
         let spare = |speed: f64| share * self.curve.torque(speed) * speed - self.accessories_w(speed) - net_w;

@@ -1,4 +1,4 @@
-//! What the parts of drivelines have in common: how their parameters are told and refused, and a search.
+//! What the parts of drivelines have in common: how their parameters are told and refused, and a search for a zero.
 
 use headland_plugin::{Bound, Parameter, Refusal};
 
@@ -41,34 +41,7 @@ pub(crate) fn hold(parameters: &[Parameter], values: &[(&str, f64)]) -> Result<(
     Ok(())
 }
 
-/// Halvings that narrow an interval to rounding.
-const HALVINGS: usize = 60;
-
-/// Where a function that rises through 0 between `low` and `high` is 0, from the side where it is 0 or less; the end that
-/// it does not cross otherwise.
-pub(crate) fn rising_zero(low: f64, high: f64, function: impl Fn(f64) -> f64) -> f64 {
-    if function(low) > 0.0 {
-        return low;
-    }
-    if function(high) <= 0.0 {
-        return high;
-    }
-    let (mut low, mut high) = (low, high);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if middle <= low.min(high) || middle >= low.max(high) {
-            break;
-        }
-        if function(middle) <= 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    low
-}
-
-/// Where a smooth function that rises through 0 between `low` and `high` is 0, by false position (Illinois variant); the end
+/// Where a smooth function that rises through 0 from `low` to `high`, whichever is greater, is 0, by false position (Illinois variant); the end
 /// that it does not cross otherwise.
 pub(crate) fn crossing(mut low: f64, mut high: f64, function: impl Fn(f64) -> f64) -> f64 {
     const RELATIVE_TOLERANCE: f64 = 1e-10;
@@ -136,15 +109,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_zero_is_found_from_below_and_ends_are_kept() {
-        let root = rising_zero(0.0, 4.0, |x| x * x - 2.0);
-        assert!((root - 2f64.sqrt()).abs() < 1e-15 && root * root <= 2.0);
-        assert!((crossing(0.0, 4.0, |x| x * x - 2.0) - root).abs() < 1e-9);
+    fn a_zero_is_found_and_ends_are_kept() {
+        let root = crossing(0.0, 4.0, |x| x * x - 2.0);
+        assert!((root - 2f64.sqrt()).abs() < 1e-9);
         assert_eq!((crossing(3.0, 4.0, |x| x - 1.0), crossing(0.0, 0.5, |x| x - 1.0)), (3.0, 0.5));
-        assert_eq!(rising_zero(3.0, 4.0, |x| x - 1.0), 3.0);
-        assert_eq!(rising_zero(0.0, 0.5, |x| x - 1.0), 0.5);
         // Backwards too: from 4 down to 0 the function 2 − x rises.
-        assert!((rising_zero(4.0, 0.0, |x| 2.0 - x) - 2.0).abs() < 1e-15);
+        assert!((crossing(4.0, 0.0, |x| 2.0 - x) - 2.0).abs() < 1e-9);
     }
 
     #[test]

@@ -173,6 +173,44 @@ fn every_scenario_conforms_to_the_schema() {
     }
 }
 
+/// Vehicles, grounds, cycles and soils that scenarios include conform to the part that they stand for.
+#[test]
+fn every_piece_conforms_to_its_part_of_the_schema() {
+    let whole = schema();
+    let scenario = &whole["$defs"]["scenario"]["properties"];
+    let parts = [
+        ("vehicles", &scenario["vehicle"]),
+        ("grounds", &scenario["ground"]),
+        ("cycles", &whole["$defs"]["cycle"]),
+        ("tyres", &scenario["vehicle"]["properties"]["axles"]["items"]["properties"]["tyre"]),
+        ("drivelines", &whole["$defs"]["driveline"]),
+    ];
+    for (folder, part) in parts {
+        let files = files_below(&root().join("scenarios").join(folder));
+        assert!(!files.is_empty(), "{folder}");
+        for path in files {
+            if let Err(why) = validate(&whole, part, &read(&path), "") {
+                panic!("{}: {why}", path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn every_scenario_of_the_documentation_conforms_to_the_schema() {
+    let (schema, folder) = (schema(), root().join("scenarios"));
+    let mut blocks = crate::blocks();
+    blocks.retain(|block| block.mark == "ron scenario");
+    assert!(blocks.len() > 5, "{}", blocks.len());
+    for block in blocks {
+        let name = format!("{}:{}", block.page, block.line);
+        let document = Document::of_text(&name, &block.text, &folder).unwrap();
+        if let Err(why) = validate(&schema, &schema, &as_json(document.tree(), document.text()), "") {
+            panic!("{name}: {why}");
+        }
+    }
+}
+
 #[test]
 fn what_the_program_refuses_the_schema_refuses_with_its_place() {
     let schema = schema();

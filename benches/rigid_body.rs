@@ -1,4 +1,4 @@
-//! Steps per second of the rigid body: one vehicle, and 64 at once. `cargo bench --bench rigid_body`.
+//! Steps per second of the rigid body: one vehicle, and 64 at once. `cargo bench --bench rigid_body [-- SCENARIO.ron ...]`.
 //!
 //! Four wheels on a map of heights, each with its tyre, its soil and its slip, driveline, driver and trace included. The
 //! fastest of some rounds counts, so that a busy machine disturbs little. All 64 have to come to the same bits as the one.
@@ -9,7 +9,7 @@
 use headland_scenario::Scenario;
 use headland_sim::Outcome;
 use rayon::prelude::*;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Rounds of which the fastest counts.
@@ -20,8 +20,15 @@ const VEHICLES: usize = 64;
 fn main() {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
     let registry = headland_stock::registry();
-    for name in ["coast_down_rigid", "rough_ground_rigid", "side_slope_rigid"] {
-        let scenario = Scenario::read(&scenarios.join(format!("{name}.ron")), &registry).unwrap();
+    let own = ["coast_down_rigid", "rough_ground_rigid", "side_slope_rigid"];
+    let mut paths: Vec<PathBuf> =
+        std::env::args_os().skip(1).filter(|word| word != "--bench").map(PathBuf::from).collect();
+    if paths.is_empty() {
+        paths = own.iter().map(|name| scenarios.join(format!("{name}.ron"))).collect();
+    }
+    for path in paths {
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        let scenario = Scenario::read(&path, &registry).unwrap();
         let model = scenario.model(&registry).unwrap();
         let cycle = scenario.cycle.as_ref().unwrap();
         let drive = || scenario.fidelity.simulate(&model, cycle).unwrap();

@@ -1,5 +1,6 @@
 //! What a rigid body needs to be told beside axles, tyres, masses and heights.
 
+use crate::trailer::Trailer;
 use headland_plugin::Refusal;
 use headland_sim::Axles;
 
@@ -22,6 +23,8 @@ pub struct Chassis {
     pub centre: Differential,
     /// What each axle is, in the order of the vehicle's axles.
     pub axles: Vec<AxleBody>,
+    /// What is coupled to it; `None` where nothing is.
+    pub trailer: Option<Trailer>,
 }
 
 /// The place of what is carried.
@@ -131,6 +134,6 @@ impl Chassis {
             let expected = "axles ahead of the centre of gravity and behind it";
             return refuse("steering", "Front".to_owned(), expected);
         }
-        Ok(())
+        self.trailer.as_ref().map_or(Ok(()), Trailer::check)
     }
 }

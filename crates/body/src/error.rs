@@ -67,6 +67,11 @@ pub enum BodyError {
         /// Height of the tyre's section [m].
         most_m: f64,
     },
+    /// There is a trailer, and no task says what it weighs.
+    #[error(
+        "the vehicle's `body` has a `trailer`, and no task tows one: expected a task with a `carriage`, which says its mass"
+    )]
+    NothingTowed,
     /// It finds no rest on its wheels.
     #[error("the vehicle does not stand on its wheels where it is to start: it would turn over")]
     NoRest,

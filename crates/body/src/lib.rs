@@ -20,12 +20,14 @@ mod steer;
 #[cfg(test)]
 mod tests;
 mod track;
+mod trailer;
 mod wheel;
 mod world;
 
 pub use chassis::{AxleBody, Chassis, Differential, Payload, Steering, SteeringMode, Suspension};
 pub use error::BodyError;
 pub use hub::{Hub, hubs};
+pub use trailer::{Trailer, TrailerAxle};
 
 use headland_sim::{Cycle, Model, Outcome, simulate_on};
 use headland_trace::TraceError;

@@ -1,6 +1,8 @@
 //! A vehicle that is driven as a rigid body.
 
 mod carriage;
+mod contact;
+mod towed;
 mod watch;
 
 use crate::BodyError;
@@ -9,14 +11,18 @@ use crate::chassis::Chassis;
 use crate::ground::Ground;
 use crate::pace::{self, Carried};
 use crate::spin::Spin;
-use crate::standing::{Weight, below, stand};
+use crate::standing::{Weight, stand};
 use crate::steer::Steer;
 use crate::track::{Track, yaw_of};
-use crate::wheel::{Felt, Scene, Strut, Touch, Wheel};
+use crate::wheel::{Scene, Wheel};
 use crate::world::{State, World, properties};
 use headland_plugin::Soil;
 use headland_sim::{Axles, Model, Push, Start};
 use rapier3d_f64::prelude::Vector;
+use towed::Towed;
+
+pub(crate) use contact::wheels;
+use contact::{deflection_m, touch};
 
 /// A vehicle in motion.
 #[derive(Debug)]
@@ -29,6 +35,7 @@ pub(crate) struct Rig<'a> {
     world: World,
     wheels: Vec<Wheel<'a>>,
     spin: Spin,
+    towed: Option<Towed<'a>>,
     steer: Steer,
     track: Track<'a>,
     state: State,
@@ -64,7 +71,11 @@ impl<'a> Rig<'a> {
         steer.start();
         let track = Track::at(&*model.terrain, start.position_m);
         let height_m = axles.centre_of_gravity_height_m;
-        let weight = Weight { newtons: weight_n, centre: Vector::ZERO, height_m };
+        let hitch = Vector::new(chassis.hitch_position_m, 0.0, axles.hitch_height_m - height_m);
+        let mut towed = Towed::of(model, chassis, axles.hitch_height_m)?;
+        let pressing_n = towed.as_ref().map_or(0.0, |towed| towed.pressing_n(model.gravity_m_s2));
+        let standing_n = weight_n + pressing_n;
+        let weight = Weight { newtons: standing_n, centre: hitch * (pressing_n / standing_n), height_m };
         let yaw_rad = yaw_of(track.place.heading_rad) + steer.aslant_rad();
         let pose = stand(&mut wheels, &ground, soil, weight, &track.place, yaw_rad)?;
         for wheel in &wheels {
@@ -75,7 +86,7 @@ impl<'a> Rig<'a> {
             }
         }
         let velocity = along_path(&track) * start.speed_m_s;
-        let world =
+        let mut world =
             World::new(pose, properties(chassis, mass_kg, height_m, mass_kg), velocity, model.gravity_m_s2);
         let tyres: Vec<(usize, f64)> = wheels.iter().map(|wheel| (wheel.axle, wheel.tyres)).collect();
         let spin = Spin::new(axles, chassis, &tyres, rotating_kg, start.speed_m_s);
@@ -85,6 +96,11 @@ impl<'a> Rig<'a> {
             pitch_kg_m2: chassis.pitch_inertia_kg_m2,
         };
         pace::check(&wheels, &spin, soil, carried, step_s)?;
+        if let Some(towed) = &mut towed {
+            towed.check_step(step_s)?;
+            let standing = world.state();
+            towed.couple(&mut world, &ground, (&standing, hitch), start.speed_m_s)?;
+        }
         let mut rig = Self {
             model,
             chassis,
@@ -95,6 +111,7 @@ impl<'a> Rig<'a> {
             world,
             wheels,
             spin,
+            towed,
             steer,
             track,
             mass_kg,
@@ -110,9 +127,12 @@ impl<'a> Rig<'a> {
         // A step of no length: what the wheels feel where they stand, for the driver who knows what resists.
         rig.touch();
         if start.speed_m_s == 0.0 {
-            rig.hold(weight_n);
+            rig.hold(standing_n);
         }
         rig.feel(0.0);
+        if let Some(towed) = &mut rig.towed {
+            rig.trouble = towed.feel(&rig.ground, rig.track.place, rig.track.position_m, 0.0);
+        }
         rig.first_spring_j = rig.spring_j();
         rig.first_strut_j = rig.strut_j();
         Ok(rig)
@@ -135,41 +155,27 @@ impl<'a> Rig<'a> {
 
     /// Energy in the tyres [J].
     fn spring_j(&self) -> f64 {
-        self.wheels.iter().map(|wheel| wheel.spring_j(self.deflection_m(wheel))).sum()
+        let own: f64 = self
+            .wheels
+            .iter()
+            .map(|wheel| wheel.spring_j(deflection_m(wheel, &self.state, &self.ground)))
+            .sum();
+        own + self.towed.as_ref().map_or(0.0, |towed| towed.spring_j(&self.ground))
     }
 
     /// Energy in the suspension [J].
     fn strut_j(&self) -> f64 {
-        let struts = self.wheels.iter().filter_map(|wheel| wheel.strut);
+        let towed = self.towed.iter().flat_map(|towed| &towed.wheels);
+        let struts = self.wheels.iter().chain(towed).filter_map(|wheel| wheel.strut);
         struts.map(|strut| 0.5 * strut.stiffness_n_m * strut.squeezed_m * strut.squeezed_m).sum()
-    }
-
-    /// How far a tyre gives way now [m].
-    fn deflection_m(&self, wheel: &Wheel) -> f64 {
-        let hub = self.state.point(wheel.arm);
-        below(&self.ground, wheel, hub, self.state.ahead()).map_or(0.0, |spot| {
-            0.5 * wheel.tyre.diameter_m - Wheel::above(hub, &spot).0 - wheel.sinkage_m - wheel.raised_m()
-        })
     }
 
     /// Lets every wheel meet the ground below it.
     fn touch(&mut self) {
-        let state = self.state;
-        let axes = (state.ahead(), state.left());
-        for wheel in &mut self.wheels {
-            let hub = state.point(wheel.arm);
-            match below(&self.ground, wheel, hub, axes.0) {
-                Ok(spot) => {
-                    let angle_rad = self.steer.angle_rad(wheel.axle, wheel.arm.x, wheel.arm.y);
-                    wheel.meet(hub, &spot, axes, angle_rad, |point| state.velocity_at(point));
-                }
-                Err(_) => {
-                    self.trouble = Some(format!(
-                        "{} comes to the edge of the map, {:.1} m east and {:.1} m north of its origin",
-                        wheel.told, hub.x, hub.y
-                    ));
-                }
-            }
+        let (state, steer) = (self.state, &self.steer);
+        let angle_rad = |wheel: &Wheel| steer.angle_rad(wheel.axle, wheel.arm.x, wheel.arm.y);
+        if let Some(told) = touch(&mut self.wheels, &state, &self.ground, angle_rad) {
+            self.trouble = Some(told);
         }
     }
 
@@ -191,25 +197,34 @@ impl<'a> Rig<'a> {
     /// Takes what is carried and what turns as the models say; returns the energy that comes with it [J].
     fn load(&mut self, push: &Push) -> f64 {
         let mut gained_j = self.spin.couple(push.turning_kg);
-        if push.mass_kg != self.mass_kg {
+        if let Some(towed) = self.towed.as_mut().filter(|_| push.towed_kg > 0.0) {
+            gained_j += towed.load(&mut self.world, push);
+        }
+        if self.towed.is_some() != (push.towed_kg > 0.0) && self.trouble.is_none() {
+            self.trouble = Some(if self.towed.is_some() {
+                "the task that tows the trailer has left it, which a rigid body cannot do".to_owned()
+            } else {
+                format!(
+                    "a task pulls {:.0} kg on other wheels, and the vehicle's `body` has no `trailer`",
+                    push.towed_kg
+                )
+            });
+        }
+        let coupled_kg = if self.towed.is_some() { push.coupled_kg } else { 0.0 };
+        let mass_kg = push.mass_kg - coupled_kg;
+        if mass_kg != self.mass_kg {
             if self.chassis.payload.is_none() && self.trouble.is_none() {
                 self.trouble = Some(format!(
                     "the vehicle is to carry {:.0} kg, and its `body` has no `payload` to say where",
-                    push.mass_kg - self.model.vehicle.mass_kg
+                    mass_kg - self.model.vehicle.mass_kg
                 ));
             }
             let before_j = self.world.kinetic_j();
             let height_m = self.axles.centre_of_gravity_height_m;
-            self.world.load(properties(self.chassis, self.model.vehicle.mass_kg, height_m, push.mass_kg));
-            self.mass_kg = push.mass_kg;
+            self.world.load(properties(self.chassis, self.model.vehicle.mass_kg, height_m, mass_kg));
+            self.mass_kg = mass_kg;
             self.state = self.world.state();
             gained_j += self.world.kinetic_j() - before_j;
-        }
-        if push.towed_kg != 0.0 && self.trouble.is_none() {
-            self.trouble = Some(format!(
-                "a task pulls {:.0} kg on other wheels, which a rigid body cannot do yet",
-                push.towed_kg
-            ));
         }
         gained_j
     }
@@ -239,53 +254,4 @@ fn along_path(track: &Track) -> Vector {
     let (sin, cos) = track.place.heading_rad.sin_cos();
     let level = track.place.cos_slope();
     Vector::new(level * sin, level * cos, track.place.sin_slope)
-}
-
-pub(crate) fn wheels<'a>(axles: &'a Axles, chassis: &Chassis, weight_n: f64) -> Vec<Wheel<'a>> {
-    let mut wheels = Vec::new();
-    for (index, axle) in axles.list().iter().enumerate() {
-        let of_tyre = |tyres: f64| tyres * axle.tyre.stiffness_n_per_m();
-        let sides: &[(&str, f64)] =
-            if axle.wheels == 1 { &[("middle", 0.0)] } else { &[("left", 0.5), ("right", -0.5)] };
-        for (side, part) in sides {
-            let tyres = f64::from(axle.wheels) / sides.len() as f64;
-            let given_m = axles.load_n(index, weight_n, 0.0) / of_tyre(f64::from(axle.wheels));
-            let hub_m = 0.5 * axle.tyre.diameter_m - given_m;
-            wheels.push(Wheel {
-                name: format!("axle_{}_{side}", index + 1),
-                told: format!("the {side} wheel of axle {}", index + 1),
-                axle: index,
-                arm: Vector::new(
-                    axle.position_m,
-                    part * axle.track_m,
-                    hub_m - axles.centre_of_gravity_height_m,
-                ),
-                tyre: &axle.tyre,
-                tyres,
-                body: chassis.axles[index],
-                stiffness_n_m: of_tyre(tyres),
-                damping_n_s_m: tyres * chassis.axles[index].damping_n_s_m,
-                earlier: axles.earlier(index),
-                // The chord of a circle that the ground cuts off.
-                footprint_m: ((axle.tyre.diameter_m - given_m) * given_m).max(0.0).sqrt(),
-                strut: chassis.axles[index].suspension.map(|own| {
-                    let level_m = axles.load_n(index, weight_n, 0.0) / sides.len() as f64 / own.stiffness_n_m;
-                    Strut {
-                        stiffness_n_m: own.stiffness_n_m,
-                        damping_n_s_m: own.damping_n_s_m,
-                        level_m,
-                        squeezed_m: level_m,
-                        rate_m_s: 0.0,
-                    }
-                }),
-                slip: 0.0,
-                side: 0.0,
-                sinkage_m: 0.0,
-                sinking_m_s: 0.0,
-                touch: Touch::default(),
-                felt: Felt::default(),
-            });
-        }
-    }
-    wheels
 }

@@ -114,6 +114,29 @@ impl Spin {
         spin
     }
 
+    /// Wheels that nothing drives or brakes, each for itself.
+    pub fn free(tyres: &[f64], rotating_kg: f64, speed_m_s: f64) -> Self {
+        let all: f64 = tyres.iter().sum();
+        let masses_kg: Vec<f64> = tyres.iter().map(|own| rotating_kg * own / all).collect();
+        let shaft = |(wheel, mass_kg): (usize, &f64)| Shaft {
+            wheels: vec![(wheel, 1.0)],
+            share: 0.0,
+            braked: 0.0,
+            mass_kg: *mass_kg,
+            speed_m_s,
+        };
+        let mut spin = Self {
+            shafts: masses_kg.iter().enumerate().map(shaft).collect(),
+            differences: Vec::new(),
+            turning_kg: 0.0,
+            wheels_m_s: vec![0.0; tyres.len()],
+            changes_m_s2: vec![0.0; tyres.len()],
+            masses_kg,
+        };
+        spin.spread();
+        spin
+    }
+
     fn spread(&mut self) {
         for shaft in &self.shafts {
             for (wheel, lead) in &shaft.wheels {

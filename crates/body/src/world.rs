@@ -1,14 +1,16 @@
-//! The vehicle as rapier sees it: one body under gravity and forces that are new each step.
+//! The vehicle as rapier sees it: one body, and a trailer's coupled to it, under gravity and forces that are new each step.
 
 use crate::chassis::{Chassis, Payload};
 use rapier3d_f64::prelude::{
-    MassProperties, PhysicsWorld, Pose, RigidBody, RigidBodyBuilder, RigidBodyHandle, Vector,
+    MassProperties, PhysicsWorld, Pose, RigidBody, RigidBodyBuilder, RigidBodyHandle, SphericalJointBuilder,
+    Vector,
 };
 
 /// Rapier's world and the body in it.
 pub(crate) struct World {
     physics: PhysicsWorld,
     body: RigidBodyHandle,
+    towed: Option<RigidBodyHandle>,
 }
 
 impl std::fmt::Debug for World {
@@ -31,6 +33,20 @@ pub(crate) struct State {
 }
 
 impl State {
+    /// At rest at a pose, its centre of gravity there.
+    pub fn at(pose: Pose) -> Self {
+        Self { pose, centre: pose.translation, velocity: Vector::ZERO, turning: Vector::ZERO }
+    }
+
+    fn of(body: &RigidBody) -> Self {
+        Self {
+            pose: *body.position(),
+            centre: body.center_of_mass(),
+            velocity: body.linvel(),
+            turning: body.angvel(),
+        }
+    }
+
     pub fn ahead(&self) -> Vector {
         self.pose.rotation * Vector::X
     }
@@ -92,40 +108,76 @@ impl World {
             .can_sleep(false)
             .build();
         let body = physics.insert_body(body);
-        let mut world = Self { physics, body };
+        let mut world = Self { physics, body, towed: None };
         world.physics.bodies[body].recompute_mass_properties_from_colliders(&world.physics.colliders);
         world
     }
 
     pub fn state(&self) -> State {
-        let body = &self.physics.bodies[self.body];
-        State {
-            pose: *body.position(),
-            centre: body.center_of_mass(),
-            velocity: body.linvel(),
-            turning: body.angvel(),
-        }
+        State::of(&self.physics.bodies[self.body])
+    }
+
+    /// Motion of the trailer; `None` where there is none.
+    pub fn towed(&self) -> Option<State> {
+        self.towed.map(|body| State::of(&self.physics.bodies[body]))
+    }
+
+    /// Couples a trailer, whose axes begin in the coupling, at a point of the vehicle's axes.
+    pub fn couple(&mut self, pose: Pose, properties: MassProperties, velocity: Vector, hitch: Vector) {
+        /// Passes over the coupling in each step: what they leave is below the rounding of a step.
+        const PASSES: usize = 16;
+        let trailer: RigidBody = RigidBodyBuilder::dynamic()
+            .pose(pose)
+            .linvel(velocity)
+            .additional_mass_properties(properties)
+            .can_sleep(false)
+            .build();
+        let trailer = self.physics.insert_body(trailer);
+        self.physics.bodies[trailer].recompute_mass_properties_from_colliders(&self.physics.colliders);
+        let joint = SphericalJointBuilder::new().local_anchor1(hitch).local_anchor2(Vector::ZERO);
+        self.physics.insert_impulse_joint(self.body, trailer, joint);
+        self.physics.integration_parameters.num_internal_pgs_iterations = PASSES;
+        self.towed = Some(trailer);
     }
 
     pub fn kinetic_j(&self) -> f64 {
-        self.physics.bodies[self.body].kinetic_energy()
+        let all = [Some(self.body), self.towed].into_iter().flatten();
+        all.map(|body| self.physics.bodies[body].kinetic_energy()).sum()
     }
 
     /// Other mass properties at the same velocity of the vehicle.
     pub fn load(&mut self, properties: MassProperties) {
+        self.load_body(self.body, properties);
+    }
+
+    /// The same of the trailer.
+    pub fn load_towed(&mut self, properties: MassProperties) {
+        if let Some(towed) = self.towed {
+            self.load_body(towed, properties);
+        }
+    }
+
+    fn load_body(&mut self, body: RigidBodyHandle, properties: MassProperties) {
         let colliders = &self.physics.colliders;
-        let body = &mut self.physics.bodies[self.body];
+        let body = &mut self.physics.bodies[body];
         body.set_additional_mass_properties(properties, true);
         body.recompute_mass_properties_from_colliders(colliders);
     }
 
-    /// One step under a force in the centre of gravity [N] and a moment about it [N m].
-    pub fn step(&mut self, force: Vector, moment: Vector, step_s: f64) {
-        let body = &mut self.physics.bodies[self.body];
+    fn push(&mut self, body: RigidBodyHandle, (force, moment): (Vector, Vector)) {
+        let body = &mut self.physics.bodies[body];
         body.reset_forces(true);
         body.reset_torques(true);
         body.add_force(force, true);
         body.add_torque(moment, true);
+    }
+
+    /// One step under a force in the centre of gravity [N] and a moment about it [N m], and the same of the trailer.
+    pub fn step(&mut self, own: (Vector, Vector), towed: (Vector, Vector), step_s: f64) {
+        self.push(self.body, own);
+        if let Some(trailer) = self.towed {
+            self.push(trailer, towed);
+        }
         self.physics.integration_parameters.dt = step_s;
         self.physics.step();
     }

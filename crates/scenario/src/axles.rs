@@ -32,10 +32,14 @@ pub struct TyreFile {
 }
 
 /// Bounds of the numbers of an axle, by the path from it.
-pub const BOUNDS: [(&str, Bound); 9] = [
+pub const BOUNDS: [(&str, Bound); 3] = [
     ("position_m", Bound::Within(-50.0, 50.0)),
     ("track_m", Bound::Within(0.0, 20.0)),
     ("lead", Bound::Within(0.5, 2.0)),
+];
+
+/// Bounds of those of its tyre.
+pub const TYRE_BOUNDS: [(&str, Bound); 6] = [
     ("tyre.width_m", Bound::Positive),
     ("tyre.diameter_m", Bound::Positive),
     ("tyre.section_height_m", Bound::Positive),
@@ -98,7 +102,7 @@ fn standing(document: &Document, vehicle: &VehicleFile) -> Result<Option<Axles>,
         });
     };
     for index in 0..list.len() {
-        for (path, bound) in BOUNDS {
+        for (path, bound) in BOUNDS.into_iter().chain(TYRE_BOUNDS) {
             let whole = format!("vehicle.axles.{index}.{path}");
             if let (Some(node), Some(value)) = (document.find(&whole), document.number(&whole)) {
                 let name = path.rsplit('.').next().unwrap_or(path);
@@ -122,18 +126,16 @@ fn standing(document: &Document, vehicle: &VehicleFile) -> Result<Option<Axles>,
 
 fn axle(file: &AxleFile) -> Axle {
     let AxleFile { position_m, track_m, wheels, tyre, lead } = file;
-    Axle {
-        position_m: *position_m,
-        track_m: *track_m,
-        wheels: *wheels,
-        tyre: Tyre {
-            width_m: tyre.width_m,
-            diameter_m: tyre.diameter_m,
-            section_height_m: tyre.section_height_m,
-            inflation_pa: tyre.inflation_pa,
-            carcass_pa: tyre.carcass_pa,
-            stiffness_n_per_m: tyre.stiffness_n_per_m,
-        },
-        lead: *lead,
+    Axle { position_m: *position_m, track_m: *track_m, wheels: *wheels, tyre: self::tyre(tyre), lead: *lead }
+}
+
+pub fn tyre(file: &TyreFile) -> Tyre {
+    Tyre {
+        width_m: file.width_m,
+        diameter_m: file.diameter_m,
+        section_height_m: file.section_height_m,
+        inflation_pa: file.inflation_pa,
+        carcass_pa: file.carcass_pa,
+        stiffness_n_per_m: file.stiffness_n_per_m,
     }
 }

@@ -1,9 +1,11 @@
 //! The rigid body of a vehicle: read, checked, refused with its place.
 
+use crate::axles::TYRE_BOUNDS;
 use crate::document::Document;
 use crate::error::ScenarioError;
 use crate::plugins::bounded;
 use crate::schema::{FidelityFile, ScenarioFile, VehicleFile};
+use crate::trailer::{TRAILER_AXLE_BOUNDS, TRAILER_BOUNDS, TrailerFile, trailer};
 use headland_body::{
     AxleBody, BodyError, Chassis, Differential, Payload, RunError, Steering, SteeringMode, Suspension, check,
     simulate,
@@ -23,6 +25,7 @@ pub struct BodyFile {
     pub steering: SteeringFile,
     pub centre: DifferentialFile,
     pub axles: Vec<AxleBodyFile>,
+    pub trailer: Option<TrailerFile>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -135,6 +138,10 @@ pub const AXLE_BOUNDS: [(&str, Bound); 7] = [
     ("suspension.damping_n_s_m", Bound::Positive),
 ];
 
+pub fn suspension(file: Option<&SuspensionFile>) -> Option<Suspension> {
+    file.map(|own| Suspension { stiffness_n_m: own.stiffness_n_m, damping_n_s_m: own.damping_n_s_m })
+}
+
 /// The body of a vehicle; `None` where it has none.
 fn chassis(document: &Document, vehicle: &VehicleFile) -> Result<Option<Chassis>, ScenarioError> {
     let Some(body) = &vehicle.body else { return Ok(None) };
@@ -151,6 +158,16 @@ fn chassis(document: &Document, vehicle: &VehicleFile) -> Result<Option<Chassis>
         AXLE_BOUNDS
             .into_iter()
             .try_for_each(|(path, limits)| bound(&format!("axles.{index}.{path}"), limits))?;
+    }
+    if let Some(trailer) = &body.trailer {
+        TRAILER_BOUNDS
+            .into_iter()
+            .try_for_each(|(path, limits)| bound(&format!("trailer.{path}"), limits))?;
+        for index in 0..trailer.axles.len() {
+            let of_axle =
+                |(path, limits): (&str, Bound)| bound(&format!("trailer.axles.{index}.{path}"), limits);
+            TRAILER_AXLE_BOUNDS.into_iter().chain(AXLE_BOUNDS).chain(TYRE_BOUNDS).try_for_each(of_axle)?;
+        }
     }
     let differential = |file: DifferentialFile| match file {
         DifferentialFile::Open => Differential::Open,
@@ -186,12 +203,10 @@ fn chassis(document: &Document, vehicle: &VehicleFile) -> Result<Option<Chassis>
                 cornering_stiffness_per_rad: axle.cornering_stiffness_per_rad,
                 relaxation_length_m: axle.relaxation_length_m,
                 differential: differential(axle.differential),
-                suspension: axle.suspension.as_ref().map(|own| Suspension {
-                    stiffness_n_m: own.stiffness_n_m,
-                    damping_n_s_m: own.damping_n_s_m,
-                }),
+                suspension: suspension(axle.suspension.as_ref()),
             })
             .collect(),
+        trailer: body.trailer.as_ref().map(trailer),
     }))
 }
 
@@ -229,6 +244,7 @@ pub fn fidelity(
 fn refused(document: &Document, error: &BodyError) -> ScenarioError {
     let path = match error {
         BodyError::NoAxles => "vehicle".to_owned(),
+        BodyError::NothingTowed => "vehicle.body.trailer".to_owned(),
         BodyError::NotPositive { name, .. } => format!("vehicle.{name}"),
         BodyError::Chassis(refusal) => format!("vehicle.body.{}", refusal.parameter),
         BodyError::Step { .. } => "simulation.step_s".to_owned(),

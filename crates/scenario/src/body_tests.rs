@@ -89,3 +89,63 @@ fn what_cannot_be_is_refused_where_it_stands() {
     let mass = told("mass_kg: 13000", "mass_kg: 0");
     assert!(mass.contains("`mass_kg` is 0, expected more than 0"), "{mass}");
 }
+
+const TRAILER: &str = r#"steering: (mode: Front, limit_rad: "35 deg", rate_rad_s: 0.5, look_ahead_m: 5),
+            trailer: (
+                centre_of_gravity_height_m: 1.4, roll_radius_m: 0.9, pitch_radius_m: 1.6, yaw_radius_m: 1.7, rotating_mass_kg: 150,
+                axles: [(
+                    position_m: -4.5, track_m: 1.9, wheels: 2,
+                    tyre: (width_m: 0.5, diameter_m: 1.3, section_height_m: 0.3, inflation_pa: "2 bar", carcass_pa: 0),
+                    damping_n_s_m: 5e3, friction: 0.8, slip_stiffness: 12, cornering_stiffness_per_rad: 6, relaxation_length_m: 0.5,
+                )],
+            ),"#;
+const STEERING: &str = r#"steering: (mode: Front, limit_rad: "35 deg", rate_rad_s: 0.5, look_ahead_m: 5),"#;
+const TOWING: &str = r#"air: (density_kg_m3: 1.2),
+    tasks: {"trailer": Trailer(
+        carriage: (mass_kg: 2000, carried_share: 0.1, rolling_coefficient: 0.03, drag_area_m2: 0),
+        capacity_kg: 6000, initial_kg: 5000, fill_rate_kg_s: 50, empty_rate_kg_s: 300, tipping_power_w: 0,
+    )},"#;
+
+#[test]
+fn a_trailer_is_read_with_its_axles_and_drives_in_both_fidelities() {
+    let text = GOOD.replace(STEERING, TRAILER).replace("air: (density_kg_m3: 1.2),", TOWING);
+    let registry = headland_stock::registry();
+    let way = |text: &str| {
+        let scenario = of(text);
+        let model = scenario.model(&registry).unwrap();
+        let outcome = scenario.fidelity.simulate(&model, scenario.cycle.as_ref().unwrap()).unwrap();
+        assert_eq!(outcome.end, headland_sim::End::Finished);
+        *outcome.trace.get("position_m").unwrap().last().unwrap()
+    };
+    let (three, one) = (way(&text), way(&text.replace("RigidBody(record_s: \"50 ms\")", "Longitudinal")));
+    // A high trailer leans on its hitch as it slows down, and its wheels turn: neither is known in one dimension.
+    assert!((three / one - 1.0).abs() < 0.015, "{three} {one}");
+}
+
+#[test]
+fn a_trailer_that_cannot_be_is_refused_where_it_stands() {
+    let bare = GOOD.replace(STEERING, TRAILER);
+    let told = |text: &str| {
+        Scenario::of_text("test.ron", text, Path::new(""), &headland_stock::registry()).unwrap_err().told()
+    };
+    assert!(
+        told(&bare).contains("no task tows one") && told(&bare).contains("trailer: ("),
+        "{}",
+        told(&bare)
+    );
+    let towing = bare.replace("air: (density_kg_m3: 1.2),", TOWING);
+    for (from, to, expected) in [
+        ("yaw_radius_m: 1.7", "yaw_radius_m: 0", "yaw_radius_m"),
+        (
+            "position_m: -4.5, track_m: 1.9, wheels: 2",
+            "position_m: -4.5, track_m: 1.9, wheels: 3",
+            "as many left as right",
+        ),
+        ("position_m: -4.5", "position_m: 4.5", "position_m"),
+        ("inflation_pa: \"2 bar\"", "inflation_pa: -1", "inflation_pa"),
+    ] {
+        assert!(towing.contains(from), "{from}");
+        let told = told(&towing.replace(from, to));
+        assert!(told.contains(expected), "{told}");
+    }
+}

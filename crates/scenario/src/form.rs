@@ -1,10 +1,11 @@
 //! What a scenario file looks like: the forms of its parts, found out from the types that read them.
 
-use crate::axles::BOUNDS as OF_AN_AXLE;
+use crate::axles::{BOUNDS as OF_AN_AXLE, TYRE_BOUNDS as OF_A_TYRE};
 use crate::body::{AXLE_BOUNDS as OF_AN_AXLE_OF_THE_BODY, BOUNDS as OF_THE_BODY};
 use crate::cycle::forms::{cycle, driver, phase};
 use crate::form_about::{ABOUT, BESIDE};
 use crate::schema::ScenarioFile;
+use crate::trailer::{TRAILER_AXLE_BOUNDS as OF_AN_AXLE_OF_THE_TRAILER, TRAILER_BOUNDS as OF_THE_TRAILER};
 use crate::until::UntilFile;
 use headland_plugin::{Bound, Form, form_of};
 
@@ -101,6 +102,11 @@ fn bound(path: &str) -> Bound {
     of("vehicle.body.axles.", &OF_AN_AXLE_OF_THE_BODY)
         .or_else(|| of("vehicle.body.", &OF_THE_BODY))
         .or_else(|| of("vehicle.axles.", &OF_AN_AXLE))
+        .or_else(|| of("vehicle.axles.", &OF_A_TYRE))
+        .or_else(|| of("vehicle.body.trailer.axles.", &OF_AN_AXLE_OF_THE_TRAILER))
+        .or_else(|| of("vehicle.body.trailer.axles.", &OF_AN_AXLE_OF_THE_BODY))
+        .or_else(|| of("vehicle.body.trailer.axles.", &OF_A_TYRE))
+        .or_else(|| of("vehicle.body.trailer.", &OF_THE_TRAILER))
         .unwrap_or(Bound::Finite)
 }
 
@@ -161,6 +167,8 @@ mod tests {
         assert_eq!(bound("vehicle.axles.tyre.width_m"), Bound::Positive);
         assert_eq!(bound("vehicle.body.axles.friction"), Bound::Within(0.01, 3.0));
         assert_eq!(bound("vehicle.body.steering.rate_rad_s"), Bound::Positive);
+        assert_eq!(bound("vehicle.body.trailer.axles.tyre.inflation_pa"), Bound::Positive);
+        assert_eq!(bound("vehicle.body.trailer.yaw_radius_m"), Bound::Positive);
         assert_eq!(bound("vehicle.mass_kg"), Bound::Finite);
     }
 }

@@ -30,6 +30,7 @@ mod scenario;
 #[cfg(test)]
 mod scenario_tests;
 mod schema;
+mod trailer;
 mod tree;
 mod until;
 

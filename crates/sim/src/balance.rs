@@ -345,6 +345,10 @@ impl Model {
             sums.pto_power_w += load.pto_power_w;
             sums.hydraulic_power_w += load.hydraulic_power_w;
             sums.towed_kg += load.towed_mass_kg;
+            if load.towed_mass_kg > 0.0 {
+                sums.coupled_kg += load.mass_kg;
+                sums.towed_n += load.drawbar_force_n;
+            }
             carried_kg += load.mass_kg;
         }
         situation.mass_kg += carried_kg;
@@ -395,6 +399,8 @@ impl Model {
 pub(crate) struct Sums {
     pub rotating_kg: f64,
     pub towed_kg: f64,
+    pub coupled_kg: f64,
+    pub towed_n: f64,
     pub task_push_n: f64,
     pub pushed_n: f64,
     pub resistance_n: f64,

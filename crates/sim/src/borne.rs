@@ -144,7 +144,9 @@ impl<'a> Machine<'a> {
         accounts[AIR] -= air_n * stepped.forward_m;
         accounts[SLOPE] += stepped.slope_j;
         accounts[BRAKES] += stepped.brakes_j;
-        accounts[DRAWBAR] += (stepped.way * push.drawbar_n - push.hitch_n) * stepped.hitch_m;
+        accounts[DRAWBAR] += (stepped.way * (push.drawbar_n - stepped.towed_n) - push.hitch_n)
+            * stepped.hitch_m
+            + stepped.towed_j;
         accounts[MASS_CHANGE] += stepped.mass_j;
         if let Some(slip) = self.slots.slip {
             accounts[slip] += stepped.slip_j;
@@ -222,6 +224,8 @@ impl Model {
             hitch_n: sums.task_push_n,
             mass_kg: situation.mass_kg,
             towed_kg: sums.towed_kg,
+            coupled_kg: sums.coupled_kg,
+            towed_n: sums.towed_n,
             turning_kg: sums.rotating_kg - self.vehicle.rotating_mass_kg,
         };
         (instant, Borne { push, air_n, delivered_n: rolled.delivery.force_n })

@@ -26,6 +26,10 @@ pub struct Push {
     pub mass_kg: f64,
     /// Mass that is pulled on other wheels [kg].
     pub towed_kg: f64,
+    /// Part of `mass_kg` that belongs to what is pulled: the vehicle carries it at the hitch [kg].
+    pub coupled_kg: f64,
+    /// Part of `drawbar_n` that what is pulled takes on its own wheels [N].
+    pub towed_n: f64,
     /// What driveline and effects add to the inertia of the driven wheels [kg].
     pub turning_kg: f64,
 }
@@ -45,6 +49,10 @@ pub struct Stepped {
     pub soil_j: f64,
     /// What slip along the wheels took [J].
     pub slip_j: f64,
+    /// Part of the pull at the hitch that acted on wheels of its own instead [N], and what it took there.
+    pub towed_n: f64,
+    /// What that took [J].
+    pub towed_j: f64,
     /// Gain of potential energy [J].
     pub slope_j: f64,
     /// What the brakes took [J].

@@ -1,11 +1,14 @@
 //! One step of the body, and what a run sees of it.
 
 use super::Rig;
+use super::contact::forces;
 use crate::accounts::Step;
+use crate::spin::Turned;
 use crate::track::heading_of;
 use crate::wheel::{Felt, Touch, Wheel};
 use crate::world::State;
 use headland_sim::{AxleMotion, Carriage, Motion, Push, Stepped};
+use rapier3d_f64::prelude::Vector;
 
 /// Resistances come to their whole force on this way: about a rest they are springs, and hold [m].
 ///
@@ -61,19 +64,23 @@ impl Carriage for Rig<'_> {
         let turned =
             self.spin.advance(push.drive_n, push.brake_n, |wheel| self.wheels[wheel].felt.gross_n, step_s);
         let (ahead, hitch) = (before.ahead(), self.hitch());
-        let pulled = ahead * (push.hitch_n - self.way * push.drawbar_n);
-        let mut force = ahead * (push.free_n - self.way * push.resistance_n) + pulled;
-        let mut moment = (hitch - before.centre).cross(pulled);
-        for (index, wheel) in self.wheels.iter().enumerate() {
-            let (own, held) = (wheel.force_n(), wheel.touch.along * (-self.way * wheel.felt.resistance_n));
-            force += own + held;
-            moment += (wheel.touch.point - before.centre).cross(own);
-            moment += (wheel.touch.hub() - before.centre).cross(held);
-            // What spins a wheel up turns the vehicle back.
-            let inertia = self.spin.masses_kg[index] * wheel.touch.height_m;
-            moment -= wheel.touch.across * (inertia * self.spin.changes_m_s2[index]);
+        // What resists wheels of its own acts there.
+        let drawbar_n = if self.towed.is_some() { push.drawbar_n - push.towed_n } else { push.drawbar_n };
+        let pulled = ahead * (push.hitch_n - self.way * drawbar_n);
+        let (mut force, mut moment) = forces(&self.wheels, &self.spin, &before, self.way);
+        force += ahead * (push.free_n - self.way * push.resistance_n) + pulled;
+        moment += (hitch - before.centre).cross(pulled);
+        let mut towed_push = (Vector::ZERO, Vector::ZERO);
+        let mut towed_turned = (Vec::new(), Turned::default());
+        if let Some(towed) = &mut self.towed {
+            let told = towed.feel(&self.ground, self.track.place, self.track.position_m, step_s);
+            self.trouble = self.trouble.take().or(told);
+            let rolled_m_s = towed.spin.wheels_m_s.clone();
+            let (force, moment, turned) = towed.push(self.way, step_s);
+            towed_push = (force, moment);
+            towed_turned = (rolled_m_s, turned);
         }
-        self.world.step(force, moment, step_s);
+        self.world.step((force, moment), towed_push, step_s);
         self.state = self.world.state();
         let step = Step {
             before: &before,
@@ -87,6 +94,12 @@ impl Carriage for Rig<'_> {
         let rolling = |wheel: usize| 0.5 * (rolled[wheel] + self.spin.wheels_m_s[wheel]);
         let mut stepped = step.work(&self.wheels, rolling, &mut self.own);
         stepped.mass_j = -mass_j;
+        if let Some(towed) = &mut self.towed {
+            let (rolled_m_s, turned) = &towed_turned;
+            let scale = (self.way, step_s, self.model.gravity_m_s2);
+            let pushed = (towed_push.0, *turned);
+            towed.book(&self.world, rolled_m_s, pushed, scale, &before, &mut self.own, &mut stepped);
+        }
         for wheel in &mut self.wheels {
             wheel.settle(step_s);
         }
@@ -108,7 +121,8 @@ impl Carriage for Rig<'_> {
     }
 
     fn kinetic_j(&self) -> f64 {
-        self.world.kinetic_j() + self.spin.kinetic_j()
+        let towed_j = self.towed.as_ref().map_or(0.0, |towed| towed.spin.kinetic_j());
+        self.world.kinetic_j() + self.spin.kinetic_j() + towed_j
     }
 
     fn accounts(&self) -> Vec<(&'static str, f64)> {
@@ -125,7 +139,10 @@ impl Carriage for Rig<'_> {
         let whole =
             ["roll_rad", "pitch_rad", "yaw_rate_rad_s", "side_speed_m_s", "path_offset_m", "height_m"];
         let mut names: Vec<String> = whole.map(str::to_owned).into();
-        for wheel in &self.wheels {
+        if self.towed.is_some() {
+            names.extend(TOWED_CHANNELS.map(str::to_owned));
+        }
+        for wheel in self.wheels.iter().chain(self.towed.iter().flat_map(|towed| &towed.wheels)) {
             names.extend(WHEEL_CHANNELS.map(|what| format!("{}_{what}", wheel.name)));
             names.extend(wheel.strut.map(|_| format!("{}_suspension_m", wheel.name)));
         }
@@ -145,7 +162,22 @@ impl Carriage for Rig<'_> {
             self.track.left_m,
             centre.z,
         ]);
-        for wheel in &self.wheels {
+        if let Some(towed) = &self.towed {
+            let (ahead, left, up) = (towed.state.ahead(), towed.state.left(), towed.state.up());
+            let centre = towed.state.centre;
+            row.extend([
+                towed.angle_rad(&self.state),
+                left.z.atan2(up.z),
+                ahead.z.asin(),
+                heading_of(ahead, heading_of(self.state.ahead(), self.track.place.heading_rad)),
+                centre.x,
+                centre.y,
+                centre.z,
+                towed.pull_n,
+                towed.load_n,
+            ]);
+        }
+        for wheel in self.wheels.iter().chain(self.towed.iter().flat_map(|towed| &towed.wheels)) {
             let Touch { load_n, deflection_m, steer_rad, .. } = wheel.touch;
             let Felt { gross_n, side_n, resistance_n, rut_m, .. } = wheel.felt;
             row.extend([
@@ -163,6 +195,19 @@ impl Carriage for Rig<'_> {
         }
     }
 }
+
+/// What is written of a trailer.
+const TOWED_CHANNELS: [&str; 9] = [
+    "trailer_angle_rad",
+    "trailer_roll_rad",
+    "trailer_pitch_rad",
+    "trailer_heading_rad",
+    "trailer_east_m",
+    "trailer_north_m",
+    "trailer_height_m",
+    "coupling_pull_n",
+    "coupling_load_n",
+];
 
 /// What is written of a wheel.
 const WHEEL_CHANNELS: [&str; 9] = [

@@ -3,6 +3,7 @@
 use super::Rig;
 use crate::BodyError;
 use crate::wheel::Wheel;
+use std::f64::consts::FRAC_PI_2;
 
 /// A vehicle that leans further than this has overturned: none that works stands so [cosine of 60°].
 const OVERTURNED: f64 = 0.5;
@@ -33,6 +34,14 @@ impl Rig<'_> {
         if state.up().z < OVERTURNED {
             let aside = if state.left().z.abs() > state.ahead().z.abs() { "its side" } else { "its end" };
             return Some(format!("the vehicle overturned onto {aside}"));
+        }
+        if let Some(towed) = &self.towed {
+            if towed.state.up().z < OVERTURNED {
+                return Some("the trailer overturned".to_owned());
+            }
+            if towed.angle_rad(&self.state).abs() > FRAC_PI_2 {
+                return Some("the trailer stands across the vehicle: it has jackknifed".to_owned());
+            }
         }
         if self.ground.turned(&self.track.place) {
             return Some(BodyError::NoSurface { position_m: self.track.position_m }.to_string());

@@ -5,6 +5,7 @@ mod ending;
 mod parts;
 mod standing;
 mod swinging;
+mod towing;
 mod turning;
 
 use crate::{AxleBody, Chassis, Differential, Steering, SteeringMode, simulate};
@@ -51,6 +52,7 @@ pub fn chassis() -> Chassis {
         steering: Steering { mode: SteeringMode::Front, limit_rad: 0.6, rate_rad_s: 0.5, look_ahead_m: 5.0 },
         centre: Differential::Locked,
         axles: vec![axle; 2],
+        trailer: None,
     }
 }
 

@@ -26,7 +26,7 @@ mod world;
 
 pub use chassis::{AxleBody, Chassis, Differential, Payload, Steering, SteeringMode, Suspension};
 pub use error::BodyError;
-pub use hub::{Hub, hubs};
+pub use hub::{Hub, TrailerHubs, hubs, trailer_hubs};
 pub use trailer::{Trailer, TrailerAxle};
 
 use headland_sim::{Cycle, Model, Outcome, simulate_on};

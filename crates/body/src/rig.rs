@@ -19,7 +19,7 @@ use crate::world::{State, World, properties};
 use headland_plugin::Soil;
 use headland_sim::{Axles, Model, Push, Start};
 use rapier3d_f64::prelude::Vector;
-use towed::Towed;
+pub(crate) use towed::Towed;
 
 pub(crate) use contact::wheels;
 use contact::{deflection_m, touch};

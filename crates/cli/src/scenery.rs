@@ -1,12 +1,12 @@
 //! What is drawn around runs: the wheels of rigid bodies, and the ground of their terrains.
 
 use crate::failure::Failure;
-use headland_body::hubs;
+use headland_body::{BodyError, Hub, hubs, trailer_hubs};
 use headland_plugin::{Place, Registry, Surface};
 use headland_scenario::{Fidelity, RunSpec, Scenario};
 use headland_sim::Model;
 use headland_trace::Run;
-use headland_view::{Body, Relief, Rig, RigWheel, Setting};
+use headland_view::{Body, Relief, Rig, RigWheel, Setting, Towed};
 
 /// One run and what it was driven with.
 #[derive(Debug)]
@@ -14,6 +14,7 @@ pub struct Stage {
     run: String,
     /// Its wheels, where it is a rigid body.
     pub rig: Option<Rig>,
+    trailer: Option<Towed>,
     model: Model,
 }
 
@@ -36,7 +37,7 @@ impl Stage {
     /// As the picture takes it.
     pub fn setting(&self) -> Setting<'_> {
         let relief = self.surface().map(|_| self as &dyn Relief);
-        Setting { run: &self.run, rig: self.rig.clone(), relief }
+        Setting { run: &self.run, rig: self.rig.clone(), trailer: self.trailer.clone(), relief }
     }
 }
 
@@ -47,24 +48,31 @@ pub fn stages(scenario: &Scenario, registry: &Registry, runs: &[Run]) -> Result<
         let spec = scenario.runs.iter().find(|spec| spec.id == run.id).unwrap_or(&own);
         let scenario = scenario.run(spec, registry)?;
         let model = scenario.model(registry)?;
-        let rig = match &scenario.fidelity {
-            Fidelity::Longitudinal => None,
+        let (rig, trailer) = match &scenario.fidelity {
+            Fidelity::Longitudinal => (None, None),
             Fidelity::RigidBody { chassis, .. } => {
-                let hubs = hubs(&model, chassis).map_err(|error| Failure::Machine(error.to_string()))?;
-                let wheels = hubs.into_iter().map(|hub| RigWheel {
-                    name: hub.name,
-                    hub_m: hub.place_m,
-                    radius_m: hub.radius_m,
-                    width_m: hub.width_m,
-                    squeezed_m: hub.squeezed_m,
+                let failed = |error: BodyError| Failure::Machine(error.to_string());
+                let wheels = hubs(&model, chassis).map_err(failed)?.into_iter().map(wheel).collect();
+                let centre_height_m =
+                    model.axles.as_ref().map_or(0.0, |axles| axles.centre_of_gravity_height_m);
+                let trailer = trailer_hubs(&model, chassis).map_err(failed)?.map(|trailer| Towed {
+                    rig: Rig {
+                        centre_height_m: trailer.centre_height_m,
+                        wheels: trailer.hubs.into_iter().map(wheel).collect(),
+                    },
+                    coupling_m: trailer.coupling_m,
                 });
-                let height_m = model.axles.as_ref().map_or(0.0, |axles| axles.centre_of_gravity_height_m);
-                Some(Rig { centre_height_m: height_m, wheels: wheels.collect() })
+                (Some(Rig { centre_height_m, wheels }), trailer)
             }
         };
-        Ok(Stage { run: run.id.clone(), rig, model })
+        Ok(Stage { run: run.id.clone(), rig, trailer, model })
     };
     runs.iter().map(stage).collect()
+}
+
+fn wheel(hub: Hub) -> RigWheel {
+    let Hub { name, place_m, radius_m, width_m, squeezed_m } = hub;
+    RigWheel { name, hub_m: place_m, radius_m, width_m, squeezed_m }
 }
 
 /// A vehicle that goes with its wheels; beside those a picture, no input of any model.

@@ -5,7 +5,8 @@ use crate::lanes::{Lane, lanes};
 use crate::recorder::{Recorder, encode};
 use crate::summary::Scales;
 use crate::{
-    Scene, ViewError, balance, blueprint, forces, groups, plots, ruts, summary, surroundings, vehicle, wheels,
+    Scene, ViewError, balance, blueprint, forces, groups, plots, ruts, summary, surroundings, trailer,
+    vehicle, wheels,
 };
 use rerun::external::re_build_info::CrateVersion;
 use rerun::external::re_log_encoding::Encoder;
@@ -73,7 +74,7 @@ pub(crate) fn messages(scene: &Scene) -> Result<Vec<LogMsg>, ViewError> {
         let named = name(Who::Modelled);
         vehicle::drive(&to, (run, rig), Who::Modelled, path, &scene.vehicle, (&named, *colour))?;
         if let Some(rig) = rig {
-            ruts::draw(&to, run, path, rig, scales.deepest_m)?;
+            ruts::draw(&to, run, path, rig, scales.deepest_m, "ruts")?;
             balance::draw(&to, run, path, rig, &scene.vehicle, (scales.m_s_per_m, labelled))?;
             let base = entity::vehicle(&run.id, Who::Modelled);
             if let Some(newton_per_m) = scales.wheels_newton_per_m {
@@ -89,6 +90,9 @@ pub(crate) fn messages(scene: &Scene) -> Result<Vec<LogMsg>, ViewError> {
                 &scene.vehicle,
                 (&name(Who::Measured), *pale),
             )?;
+        }
+        if let Some(towed) = scene.setting(&run.id).and_then(|setting| setting.trailer.as_ref()) {
+            trailer::draw(&to, lane, towed, &scales)?;
         }
         forces::draw(&to, scene, run, (newton_per_m, labelled))?;
         plots::draw(&to, scene, &groups, lane)?;

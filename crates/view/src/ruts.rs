@@ -70,13 +70,14 @@ pub(crate) fn deepest_m(run: &Run, rig: &Rig) -> Option<f64> {
     channels.flatten().copied().filter(|depth| depth.is_finite()).reduce(f64::max)
 }
 
-/// Draws the ruts of a run; `deepest_m` is that of the scene.
+/// Draws the ruts of a run under a name; `deepest_m` is that of the scene.
 pub(crate) fn draw(
     to: &Recorder,
     run: &Run,
     path: &Path,
     rig: &Rig,
     deepest_m: Option<f64>,
+    name: &str,
 ) -> Result<(), ViewError> {
     let stations = stations(&path.poses);
     let prints: Vec<Vec<Print>> = rig
@@ -84,7 +85,7 @@ pub(crate) fn draw(
         .iter()
         .map(|wheel| stations.iter().map(|pose| print(run, wheel, pose)).collect())
         .collect();
-    let base = of_run(&run.id, Who::Modelled, "ruts");
+    let base = of_run(&run.id, Who::Modelled, name);
     let length = stations.len().saturating_sub(1).div_ceil(PIECES).max(1);
     let last = stations.len().saturating_sub(1);
     for (piece, first) in (0..last).step_by(length).enumerate() {

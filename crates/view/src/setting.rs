@@ -51,6 +51,16 @@ impl Rig {
     }
 }
 
+/// A trailer behind a rigid body, whose trace has `trailer_east_m`, `trailer_north_m` and `trailer_height_m` of its centre of
+/// gravity, and its `trailer_heading_rad`, `trailer_roll_rad` and `trailer_pitch_rad`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Towed {
+    /// Its wheels, from its own centre of gravity.
+    pub rig: Rig,
+    /// Where it is coupled: ahead of its centre of gravity, and above the ground [m].
+    pub coupling_m: [f64; 2],
+}
+
 /// What is known of one run.
 #[derive(Clone, Debug)]
 pub struct Setting<'a> {
@@ -58,6 +68,8 @@ pub struct Setting<'a> {
     pub run: &'a str,
     /// Its wheels, where it is a rigid body; else four wheels as large as those of the scene's vehicle roll below it.
     pub rig: Option<Rig>,
+    /// What it tows, where that is a body of its own.
+    pub trailer: Option<Towed>,
     /// Its ground; where nothing is known of it, the ground of the scene.
     pub relief: Option<&'a dyn Relief>,
 }
@@ -66,13 +78,21 @@ impl Setting<'_> {
     /// # Errors
     /// [`ViewError::Body`] for measures that cannot be.
     pub(crate) fn check(&self) -> Result<(), ViewError> {
-        let Some(rig) = &self.rig else { return Ok(()) };
-        let Some(first) = rig.wheels.first() else {
+        let towed = self.trailer.as_ref().map(|trailer| &trailer.rig);
+        self.rig.iter().chain(towed).try_for_each(Rig::check)
+    }
+}
+
+impl Rig {
+    /// # Errors
+    /// [`ViewError::Body`] for measures that cannot be.
+    fn check(&self) -> Result<(), ViewError> {
+        let Some(first) = self.wheels.first() else {
             return Err(ViewError::Body { name: "number of wheels", found: 0.0 });
         };
-        let positive = [("centre_height_m", rig.centre_height_m), ("radius_m", first.radius_m)];
+        let positive = [("centre_height_m", self.centre_height_m), ("radius_m", first.radius_m)];
         let wheels =
-            rig.wheels.iter().flat_map(|wheel| [("radius_m", wheel.radius_m), ("width_m", wheel.width_m)]);
+            self.wheels.iter().flat_map(|wheel| [("radius_m", wheel.radius_m), ("width_m", wheel.width_m)]);
         match positive.into_iter().chain(wheels).find(|(_, found)| !(*found > 0.0 && found.is_finite())) {
             Some((name, found)) => Err(ViewError::Body { name, found }),
             None => Ok(()),

@@ -1,7 +1,7 @@
 //! What a written file holds, read back with Rerun's own decoder.
 
 use headland_trace::{Origin, Run, Trace};
-use headland_view::{Axis, Body, ForceArrow, Relief, Rig, RigWheel, Scene, Setting, ViewError, write};
+use headland_view::{Axis, Body, ForceArrow, Relief, Rig, RigWheel, Scene, Setting, Towed, ViewError, write};
 use rerun::external::re_log_encoding::DecoderApp;
 use rerun::external::re_log_types::StoreKind;
 use rerun::log::{Chunk, LogMsg};
@@ -225,7 +225,9 @@ fn rigid(id: &str) -> Run {
 }
 
 fn settings(runs: &[Run]) -> Vec<Setting<'_>> {
-    runs.iter().map(|run| Setting { run: &run.id, rig: Some(rig()), relief: Some(&Hill) }).collect()
+    runs.iter()
+        .map(|run| Setting { run: &run.id, rig: Some(rig()), trailer: None, relief: Some(&Hill) })
+        .collect()
 }
 
 #[test]
@@ -281,9 +283,37 @@ fn rigid_bodies_of_a_study_each_have_a_ground_of_their_own() {
 }
 
 #[test]
+fn a_trailer_has_a_body_wheels_and_ruts_of_its_own() {
+    let mut towing = rigid("r1");
+    let rows = towing.trace.len();
+    let behind: Vec<f64> = towing.trace.get("north_m").unwrap().iter().map(|north| north - 6.0).collect();
+    let mut push = |name: &str, values: Vec<f64>| towing.trace.push(name, values, Origin::Predicted).unwrap();
+    push("trailer_height_m", behind.iter().map(|north| 0.05 * north + 1.4).collect());
+    push("trailer_north_m", behind);
+    push("trailer_east_m", vec![3.0; rows]);
+    for name in ["trailer_heading_rad", "trailer_roll_rad", "trailer_pitch_rad"] {
+        push(name, vec![0.0; rows]);
+    }
+    push("trailer_axle_1_left_load_n", vec![2e4; rows]);
+    let wheel = RigWheel { name: "trailer_axle_1_left".to_owned(), ..rig().wheels[0].clone() };
+    let towed = Towed { rig: Rig { centre_height_m: 1.4, wheels: vec![wheel] }, coupling_m: [4.0, 0.7] };
+    let runs = [towing];
+    let settings = [Setting { run: "r1", rig: Some(rig()), trailer: Some(towed), relief: None }];
+    let content = written(&Scene { forces: &[], settings: &settings, ..scene(&runs, &[]) });
+    let base = "/world/runs/r1/modelled";
+    for what in ["trailer", "trailer/wheels/trailer_axle_1_left", "trailer/wheel_forces/trailer_axle_1_left"]
+    {
+        assert_eq!(content.times_s(&format!("{base}/{what}")).len(), 401, "{what}");
+    }
+    assert!(content.recording.contains_key(&format!("{base}/trailer/body")));
+    assert!(!content.times_s(&format!("{base}/trailer_ruts/00")).is_empty());
+}
+
+#[test]
 fn a_rig_without_wheels_is_refused() {
     let runs = [rigid("r1")];
-    let bare = [Setting { run: "r1", rig: Some(Rig { wheels: Vec::new(), ..rig() }), relief: None }];
+    let bare =
+        [Setting { run: "r1", rig: Some(Rig { wheels: Vec::new(), ..rig() }), trailer: None, relief: None }];
     let folder = tempfile::tempdir().unwrap();
     let scene = Scene { forces: &[], settings: &bare, ..scene(&runs, &[]) };
     let error = write(&scene, &folder.path().join("run.rrd")).unwrap_err();

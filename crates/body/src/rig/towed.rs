@@ -92,7 +92,7 @@ impl<'a> Towed<'a> {
     }
 
     /// Its centre of gravity, from the coupling [m].
-    fn centre(&self) -> Vector {
+    pub fn centre(&self) -> Vector {
         let behind_m = (1.0 - self.carried_share) * self.trailer.behind_m();
         Vector::new(-behind_m, 0.0, self.trailer.centre_of_gravity_height_m - self.coupling_height_m)
     }

@@ -201,6 +201,20 @@ fn a_trailer_cuts_the_corner_by_its_length() {
 }
 
 #[test]
+fn the_wheels_of_a_trailer_are_behind_its_centre_of_gravity_by_what_the_hitch_carries() {
+    let found = crate::trailer_hubs(&level(), &hitched()).unwrap().unwrap();
+    let given_m = 0.5 * (1.0 - CARRIED) * TOWED_KG * GRAVITY / TYRE.stiffness_n_per_m();
+    let expected = [-CARRIED * DRAWBAR_M, 0.95, 0.5 * TYRE.diameter_m - given_m];
+    assert!(
+        found.hubs[0].place_m.iter().zip(expected).all(|(at, wanted)| (at - wanted).abs() < 1e-12),
+        "{found:?}"
+    );
+    assert!((found.coupling_m[0] - (1.0 - CARRIED) * DRAWBAR_M).abs() < 1e-12 && found.coupling_m[1] == 0.7);
+    assert_eq!((found.hubs[1].name.as_str(), found.centre_height_m), ("trailer_axle_1_right", 1.4));
+    assert_eq!(crate::trailer_hubs(&level(), &chassis()).unwrap(), None);
+}
+
+#[test]
 fn a_trailer_that_no_task_tows_is_refused_and_a_tow_without_a_trailer_is_told() {
     let bare = model(terrain::<Flat>("()"), soil::<Constant>("(coefficient: 0.05)"));
     let cycle = cycle(3.0, coast_down(), 2e-3);

@@ -130,8 +130,19 @@ const LASTING_S: f64 = 5.0;
 const MOST_ROWS: f64 = 16_000.0;
 /// Rows of a balance of forces at most: a drive in a town is braked every few seconds, and long blocks fit nowhere between.
 const MOST_ROWS_OF_MOTION: f64 = 18_000.0;
+/// Rows of a balance of powers at most while causes are searched.
+const FEW_ROWS: f64 = 6_000.0;
 /// Lower heating value that turns fuel into watts in residuals [J/kg]: diesel, EN 590; a scale only.
 pub const FUEL_J_KG: f64 = 42.8e6;
+
+/// How many rows a long recording is brought to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rows {
+    /// As many as a search needs.
+    Few,
+    /// As many as tell what was found well.
+    Many,
+}
 
 impl System {
     /// The rows of the balances `kinds`; samples that are not `allowed` belong to none.
@@ -283,15 +294,16 @@ pub fn bearing(kinds: &[Kind], runs: &[Recorded], said: &[Said]) -> Vec<bool> {
 }
 
 /// Length of a block of a balance: short enough to see what happens, long enough to hold two samples.
-pub fn block_s(kind: Kind, runs: &[Recorded]) -> f64 {
+pub fn block_s(kind: Kind, runs: &[Recorded], rows: Rows) -> f64 {
     let mut durations: Vec<f64> = runs.iter().map(|run| run.measured.trace.duration_s()).collect();
     durations.sort_by(f64::total_cmp);
     let median = durations.get(durations.len() / 2).copied().unwrap_or(1.0);
     let period = longest_period_s(runs);
     let whole: f64 = durations.iter().sum();
-    let most = match kind {
-        Kind::Parity | Kind::Slip | Kind::Motion => MOST_ROWS_OF_MOTION,
-        _ => MOST_ROWS,
+    let most = match (rows, kind) {
+        (_, Kind::Parity | Kind::Slip | Kind::Motion) => MOST_ROWS_OF_MOTION,
+        (Rows::Few, _) => FEW_ROWS,
+        (Rows::Many, _) => MOST_ROWS,
     };
     (median / ROWS_PER_RUN).max(0.04).min(1.0_f64.max(2.0 * period)).max(2.0 * period).max(whole / most)
 }

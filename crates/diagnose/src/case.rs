@@ -1,7 +1,7 @@
 //! What is diagnosed: a scenario, a recording, and everything that is prepared once.
 
 use crate::DiagnoseError;
-use crate::balance::{Kind, System, bearing, block_s, kinds};
+use crate::balance::{Kind, Rows, System, bearing, block_s, kinds};
 use crate::catalogue::{Around, Cause, causes};
 use crate::own::own;
 use crate::recorded::{Recorded, recorded};
@@ -61,6 +61,8 @@ pub(crate) struct Case<'a> {
     pub paths: Vec<Option<String>>,
     /// What the nominal model says.
     pub nominal: Vec<Said>,
+    /// How many rows the runs are brought to.
+    pub rows: Rows,
     /// What was found so far, where anything was.
     pub so_far: Option<SoFar>,
     /// Whether each run may be fitted.
@@ -107,6 +109,7 @@ impl<'a> Case<'a> {
             petty: Vec::new(),
             paths,
             nominal: Vec::new(),
+            rows: Rows::Few,
             so_far: None,
             fit: Vec::new(),
             bears: Vec::new(),
@@ -144,12 +147,11 @@ impl<'a> Case<'a> {
 
     /// What the nominal model says of the runs, and how it would have accelerated.
     fn suppose(&mut self) -> Result<(), DiagnoseError> {
-        self.so_far = None;
         self.nominal = self.said(self.study.scenario(), &self.study.priors())?;
         for (run, said) in self.runs.iter_mut().zip(&self.nominal) {
-            run.accelerate(&said.resistance_n, &said.effective_mass_kg);
+            run.acceleration_m_s2 = run.accelerated_m_s2(&said.resistance_n, &said.effective_mass_kg);
         }
-        Ok(())
+        self.build_again()
     }
 
     /// A step begins; an error where the user wants an end.
@@ -219,7 +221,7 @@ impl<'a> Case<'a> {
 
     /// The rows of every balance, of samples that are `usable`.
     pub fn system(&self, usable: &[Vec<bool>]) -> System {
-        let block_s = |kind| block_s(kind, &self.runs);
+        let block_s = |kind| block_s(kind, &self.runs, self.rows);
         System::new(&self.kinds, &self.runs, &self.nominal, &block_s, usable, &self.fit)
     }
 

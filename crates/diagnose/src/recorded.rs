@@ -166,16 +166,15 @@ impl Recorded {
         }
     }
 
-    /// The acceleration that recorded force and a model's resistance make, where the vehicle moves and both are known.
-    pub fn accelerate(&mut self, resistance_n: &[f64], effective_mass_kg: &[f64]) {
-        let Some(force) = &self.force_n else { return };
-        self.acceleration_m_s2.clone_from(&self.motion.slope);
-        for (index, acceleration) in self.acceleration_m_s2.iter_mut().enumerate() {
+    /// The acceleration that recorded force and a model's resistance make, where the vehicle moves and both are known; else
+    /// the recorded one [m/s²].
+    pub fn accelerated_m_s2(&self, resistance_n: &[f64], effective_mass_kg: &[f64]) -> Vec<f64> {
+        let Some(force) = &self.force_n else { return self.acceleration_m_s2.clone() };
+        let at = |(index, recorded): (usize, &f64)| {
             let made = (force[index] - resistance_n[index]) / effective_mass_kg[index];
-            if made.is_finite() && self.motion.value[index] > SLOWEST_M_S {
-                *acceleration = made;
-            }
-        }
+            if made.is_finite() && self.motion.value[index] > SLOWEST_M_S { made } else { *recorded }
+        };
+        self.motion.slope.iter().enumerate().map(at).collect()
     }
 }
 

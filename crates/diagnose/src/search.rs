@@ -188,7 +188,7 @@ impl Contest {
 
 impl State<'_> {
     /// What a set comes down to, cause by cause.
-    fn conclude(&self, best: Stand, first: Stand, tried: Vec<Round>, needed: f64) -> Option<Found> {
+    pub fn conclude(&self, best: Stand, first: Stand, tried: Vec<Round>, needed: f64) -> Option<Found> {
         let best = self.without_needless(best, needed)?;
         let (best, unproven) = self.without_unproven(best)?;
         Some(self.found(best, first, (tried, unproven), needed))

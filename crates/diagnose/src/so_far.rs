@@ -3,7 +3,8 @@
 
 use crate::catalogue::Class;
 use crate::prove::text;
-use crate::refine::{Refined, plain};
+use crate::recorded::Recorded;
+use crate::refine::{Cured, Refined, plain};
 use crate::said::{Said, said};
 use crate::search::Found;
 use crate::trial::Pool;
@@ -16,10 +17,18 @@ use std::sync::Arc;
 /// Accelerations that change by less than this share of themselves, in the root mean square, are as they were.
 const SAME: f64 = 0.05;
 
+/// The effects of each run.
+type Effects = Vec<Vec<Arc<dyn Effect>>>;
+/// Effects by what they are in a scenario.
+type Known = Vec<(Vec<String>, Vec<Arc<dyn Effect>>)>;
+
 /// Effects of each run, and what the model with them says.
 pub struct SoFar {
-    effects: Vec<Vec<Arc<dyn Effect>>>,
+    effects: Effects,
+    /// The free parameters beside them.
+    values: Vec<f64>,
     said: Vec<Said>,
+    accelerations_m_s2: Vec<Vec<f64>>,
 }
 
 /// An effect in many models at once.
@@ -51,21 +60,10 @@ impl Case<'_> {
             return Ok(false);
         }
         let refined = plain(self, pool, found);
-        let before_that = self.so_far.take();
-        let effects = effects(self, &refined)?;
-        let with = |values: &[f64]| {
-            said(&self.runs, &self.kinds, |run| {
-                let model = self.study.model_of(self.study.scenario(), &self.runs[run].measured, values)?;
-                Ok(beside(model, &effects[run]))
-            })
-        };
-        // The vehicle as it was found tells how it accelerates, the nominal one what a regressor changes.
-        let (told, said) = (with(&refined.values())?, with(&self.study.priors())?);
+        let so_far = self.so_far_of(effects(self, &refined)?, refined.values())?;
         let (mut changed, mut all) = (0.0, 0.0);
-        for (run, said) in self.runs.iter_mut().zip(&told) {
-            let before = run.acceleration_m_s2.clone();
-            run.accelerate(&said.resistance_n, &said.effective_mass_kg);
-            for (before, after) in before.iter().zip(&run.acceleration_m_s2) {
+        for (run, after) in self.runs.iter().zip(&so_far.accelerations_m_s2) {
+            for (before, after) in run.acceleration_m_s2.iter().zip(after) {
                 if before.is_finite() && after.is_finite() {
                     changed += (after - before).powi(2);
                     all += after.powi(2);
@@ -73,8 +71,42 @@ impl Case<'_> {
             }
         }
         let changes = changed > SAME * SAME * all;
-        self.so_far = if changes { Some(SoFar { effects, said }) } else { before_that };
+        if changes {
+            self.take_up(so_far);
+        }
         Ok(changes)
+    }
+
+    /// What was found so far once more, after the recordings were corrected.
+    pub fn build_again(&mut self) -> Result<(), DiagnoseError> {
+        if let Some(so_far) = self.so_far.take() {
+            let so_far = self.so_far_of(so_far.effects, so_far.values)?;
+            self.take_up(so_far);
+        }
+        Ok(())
+    }
+
+    fn take_up(&mut self, so_far: SoFar) {
+        for (run, acceleration) in self.runs.iter_mut().zip(&so_far.accelerations_m_s2) {
+            run.acceleration_m_s2.clone_from(acceleration);
+        }
+        self.so_far = Some(so_far);
+    }
+
+    fn so_far_of(&self, effects: Effects, values: Vec<f64>) -> Result<SoFar, DiagnoseError> {
+        let with = |values: &[f64]| {
+            said(&self.runs, &self.kinds, |run| {
+                let model = self.study.model_of(self.study.scenario(), &self.runs[run].measured, values)?;
+                Ok(beside(model, &effects[run]))
+            })
+        };
+        // The vehicle as it was found tells how it accelerates, the nominal one what a regressor changes.
+        let (told, said) = (with(&values)?, with(&self.study.priors())?);
+        let accelerated = |(run, said): (&Recorded, &Said)| {
+            run.accelerated_m_s2(&said.resistance_n, &said.effective_mass_kg)
+        };
+        let accelerations_m_s2 = self.runs.iter().zip(&told).map(accelerated).collect();
+        Ok(SoFar { effects, values, said, accelerations_m_s2 })
     }
 
     /// What the model says of every run with what was found so far.
@@ -106,14 +138,10 @@ fn beside(mut model: Model, effects: &[Arc<dyn Effect>]) -> Model {
 }
 
 /// The effects that were found, run by run; runs with the same ones share them.
-fn effects(case: &Case, refined: &Refined) -> Result<Vec<Vec<Arc<dyn Effect>>>, DiagnoseError> {
-    let mut known: Vec<(Vec<String>, Vec<Arc<dyn Effect>>)> = Vec::new();
-    let physics: Vec<_> = refined
-        .causes
-        .iter()
-        .filter(|cured| cured.cause.class == Class::Physics)
-        .map(|one| one.along())
-        .collect();
+fn effects(case: &Case, refined: &Refined) -> Result<Effects, DiagnoseError> {
+    let mut known: Known = Vec::new();
+    let physics: Vec<_> =
+        refined.causes.iter().filter(|cured| cured.cause.class == Class::Physics).map(Cured::along).collect();
     let mut all = Vec::new();
     for run in 0..case.runs.len() {
         let texts: Vec<String> = physics.iter().filter_map(|cured| text(case, cured, run)).collect();

@@ -13,16 +13,29 @@ use crate::tails::Tails;
 use crate::trial::Pool;
 use crate::{Case, System};
 
-/// What was found, looked at again where rows stray.
-pub fn straying(case: &Case, system: &System, pool: &Pool, found: Found) -> Found {
+/// What was found, looked at again where rows stray; `finer` are the free parameters alone and the causes on rows that are
+/// others than those of the search.
+pub fn straying(
+    case: &Case,
+    system: &System,
+    pool: &Pool,
+    found: Found,
+    finer: Option<(Stand, Stand)>,
+) -> Found {
     let state = State { case, system, pool, fit: &case.fit };
+    let other = finer.is_some();
+    let (first, best) = finer.unwrap_or_else(|| (found.first.clone(), found.stand.clone()));
     let again = || -> Option<Found> {
-        let stand = state.further(state.straying(&found.stand)?)?;
+        let stand = state.further(state.straying(&best)?)?;
         let (stand, more) = state.without_unproven(state.without_needless(stand, found.needed)?)?;
         let unproven = found.unproven.iter().copied().chain(more).collect();
-        Some(state.found(stand, found.first.clone(), (found.tried.clone(), unproven), found.needed))
+        Some(state.found(stand, first.clone(), (found.tried.clone(), unproven), found.needed))
     };
-    again().unwrap_or(found)
+    let as_it_was = || {
+        let told = (found.tried.clone(), found.unproven.clone());
+        other.then(|| state.found(best.clone(), first.clone(), told, found.needed))
+    };
+    again().or_else(as_it_was).unwrap_or(found)
 }
 
 impl State<'_> {

@@ -4,8 +4,9 @@
 
 use crate::balance::Kind;
 use crate::catalogue::{Cause, Class, Form, LawText};
+use crate::look::MANY_ROWS;
 use crate::noise::{Noises, Whiteners};
-use crate::search::{Found, concluded, worth};
+use crate::search::{Found, MOST_CAUSES, concluded, worth};
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Trial};
 use crate::{Case, DiagnoseError, System};
@@ -21,6 +22,8 @@ const BETTER: f64 = 0.1;
 const SIMPLER: f64 = 0.03;
 /// A law works in at least this share of the rows, by the participation ratio of its squares.
 const EVERYWHERE: f64 = 0.04;
+/// Causes that hide each other bring beside one another up to so many times what the best of them brings alone.
+const HARDLY: f64 = 3.0;
 /// A wave takes so many blocks of samples.
 const BLOCKS: f64 = 4.0;
 
@@ -58,7 +61,10 @@ fn beside(
 ) -> Result<Found, DiagnoseError> {
     let listed = found.stand.parts.clone();
     let mut candidates: Vec<Vec<Part>> = Vec::new();
-    let mut starts = vec![Vec::new()];
+    // Of many rows a formula takes long to find, and where functions are needed none does by itself.
+    let functions = listed.iter().any(|part| part.spread.is_some());
+    let rows: usize = system.chunks.iter().map(|chunk| chunk.rows.len()).sum();
+    let mut starts = if functions && rows > MANY_ROWS { Vec::new() } else { vec![Vec::new()] };
     if !listed.is_empty() {
         starts.push(listed);
     }
@@ -74,6 +80,7 @@ fn beside(
         let state = State { case, system, pool, fit: &case.fit };
         let with = |part: &Part| start.iter().cloned().chain([part.clone()]).collect::<Vec<Part>>();
         if let Some(settled) = state.settle(&with(&part), &found.stand.noises)
+            && (rows <= MANY_ROWS || worth(&settled) > worth(&found.stand))
             && let Some(better) = self::law(case, system, pool, &start, &settled.noises, (kind, target))?
             && !is_map(&better)
         {
@@ -84,10 +91,15 @@ fn beside(
         candidates.push(vec![part]);
     }
     let state = State { case, system, pool, fit: &case.fit };
+    let alone = found.tried.first().and_then(|round| round.causes.first()).map_or(0.0, |one| one.2);
+    let within = |stand: &Stand| {
+        stand.parts.len() < MOST_CAUSES && worth(stand) + HARDLY * alone > worth(&found.stand)
+    };
     let mut best: Option<Stand> = None;
     for parts in candidates {
         let Some(stand) = state.settle(&parts, &found.stand.noises) else { continue };
-        for stand in [state.with_listed(&stand), Some(stand)].into_iter().flatten() {
+        let more = if within(&stand) { state.with_listed(&stand) } else { None };
+        for stand in [more, Some(stand)].into_iter().flatten() {
             let simpler = stand.parts.len() < found.stand.parts.len();
             if !state.impossible(&stand.parts, &stand.estimate)
                 && worth(&stand) > worth(&found.stand) + margin(&found, simpler)
@@ -257,13 +269,14 @@ fn law(
         })
         .collect();
     let variables = variables(case, kind);
+    let fit = enough(&case.fit, &residual);
     let problem = Problem {
         variables: &variables,
         target,
         rows: &whitening,
         residual: &residual,
         nuisances: &nuisances,
-        fit: &case.fit,
+        fit: &fit,
     };
     let options = Options { seed: case.options.seed, ..Options::default() };
     match find(&problem, &options, &|| case.progress.interrupted()) {
@@ -272,6 +285,20 @@ fn law(
         // What is no problem for it has no law either: no rows, a run without samples.
         Err(_) => Ok(None),
     }
+}
+
+/// The fitted runs that are enough to find a formula by: evenly taken among them where their rows are many. What is found is
+/// judged by all of them.
+fn enough(fit: &[bool], rows: &[Vec<f64>]) -> Vec<bool> {
+    const ENOUGH: usize = 7_000;
+    let all: usize = rows.iter().zip(fit).filter(|(_, fit)| **fit).map(|(rows, _)| rows.len()).sum();
+    let every = all.div_ceil(ENOUGH).max(1);
+    let mut fitted = 0;
+    let take = |fit: &bool| {
+        fitted += usize::from(*fit);
+        *fit && fitted % every == every / 2
+    };
+    fit.iter().map(take).collect()
 }
 
 /// What may stand in a law: of the situation, never made of what is to be explained.
@@ -284,7 +311,7 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     let of = |values: &dyn Fn(&crate::recorded::Recorded) -> Vec<f64>| {
         Some(case.runs.iter().map(values).collect())
     };
-    let block_s = crate::balance::block_s(kind, &case.runs);
+    let block_s = crate::balance::block_s(kind, &case.runs, case.rows);
     let speeds: Vec<f64> = case.runs.iter().flat_map(|run| run.motion.value.iter().copied()).collect();
     let finest = |name: &str| match name {
         "t" => BLOCKS * block_s,
@@ -331,5 +358,18 @@ impl Cause {
             own: None,
             run: None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::enough;
+
+    #[test]
+    fn of_many_rows_a_share_of_the_runs_is_taken_evenly() {
+        let fit = [true, true, false, true, true, true, true];
+        assert_eq!(enough(&fit, &vec![vec![0.0; 10]; 7]), fit);
+        let few = enough(&fit, &vec![vec![0.0; 3000]; 7]);
+        assert_eq!(few, [true, false, false, false, true, false, false]);
     }
 }

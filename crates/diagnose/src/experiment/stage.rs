@@ -89,6 +89,7 @@ impl<'a> Stage<'a> {
             corrections: case.corrections.clone(),
             petty: case.petty.clone(),
             nominal: Vec::new(),
+            rows: case.rows,
             so_far: None,
             chosen: false,
             paths: case.paths.clone(),
@@ -100,7 +101,7 @@ impl<'a> Stage<'a> {
         stage.nominal = stage.said(case.study.scenario(), &case.study.priors())?;
         let usable: Vec<Vec<bool>> =
             stage.runs.iter().map(|run| vec![true; run.measured.trace.len()]).collect();
-        let (kinds, block_s) = (&stage.kinds, |kind| block_s(kind, &case.runs));
+        let (kinds, block_s) = (&stage.kinds, |kind| block_s(kind, &case.runs, case.rows));
         let system = System::new(kinds, &stage.runs, &stage.nominal, &block_s, &usable, &stage.fit);
         if system.chunks.is_empty() {
             return Ok(None);
@@ -153,7 +154,9 @@ impl<'a> Stage<'a> {
             count += run.measured.trace.len();
             lasts_s += run.measured.trace.duration_s();
         }
-        let samples = (block_s(Kind::Motion, &self.case.runs) * count as f64 / lasts_s.max(1e-9)).max(1.0);
+        let samples = (block_s(Kind::Motion, &self.case.runs, self.case.rows) * count as f64
+            / lasts_s.max(1e-9))
+        .max(1.0);
         Noise {
             shape: Shape::Averaged,
             sensor: ACCELEROMETER_M_S2.powi(2) / samples,

@@ -1,0 +1,204 @@
+//! A look at the runs: their rows, the regressors and what they tell; and looks after it, from what was found before.
+
+use crate::balance::{Rows, System};
+use crate::case::Correction;
+use crate::contest::Contest;
+use crate::search::{Found, LEAST_GAIN, MOST_CAUSES, NO_OTHER_RUN, PER_CAUSE, search, worth};
+use crate::state::{Part, Stand, State};
+use crate::trial::{Pool, Trial, add_trial, pool};
+use crate::{Case, DiagnoseError, bend, sensors, sharpen, straying};
+
+/// A search from nothing takes long with more rows than this; what was found before is then where the next one starts.
+pub const MANY_ROWS: usize = 12_000;
+
+/// The rows, the regressors and what they tell.
+pub struct Look {
+    pub system: System,
+    pub pool: Pool,
+    pub found: Found,
+    /// The samples that were looked at.
+    usable: Vec<Vec<bool>>,
+}
+
+impl Look {
+    /// Looks at samples that are `usable`.
+    pub fn at(case: &Case, usable: &[Vec<bool>]) -> Result<Self, DiagnoseError> {
+        let (system, pool) = prepared(case, usable)?;
+        let found = searched(case, &system, &pool)?;
+        Ok(Self { system, pool, found, usable: usable.to_vec() })
+    }
+
+    /// Looks once more, after the recordings were corrected or others of their samples are usable.
+    pub fn again(&mut self, case: &mut Case, usable: &[Vec<bool>]) -> Result<(), DiagnoseError> {
+        let (system, mut pool) = prepared(case, usable)?;
+        let rows: usize = system.chunks.iter().map(|chunk| chunk.rows.len()).sum();
+        self.found = if rows > MANY_ROWS {
+            case.step("searching on")?;
+            let parts = again(case, &system, &mut pool, &self.found.stand.parts)?;
+            let state = State { case, system: &system, pool: &pool, fit: &case.fit };
+            let told = from(&state, &parts).and_then(|(first, best)| state.grown(first, best, &self.found));
+            told.ok_or_else(|| DiagnoseError::NoBalance { channels: case.channels() })?
+        } else {
+            searched(case, &system, &pool)?
+        };
+        (self.system, self.pool, self.usable) = (system, pool, usable.to_vec());
+        Ok(())
+    }
+
+    /// Takes the faults of sensors that were found out of the recordings, and what else was found into the model, and looks
+    /// again, until neither changes.
+    pub fn sensors_first(&mut self, case: &mut Case) -> Result<(), DiagnoseError> {
+        /// A fault that is not linear takes some rounds.
+        const ROUNDS: usize = 6;
+        /// What was found is then known well enough for regressors.
+        const BUILDS: usize = 2;
+        for round in 0..ROUNDS {
+            let built = round < BUILDS && case.build_on(&self.pool, &self.found)?;
+            let corrected = self.correct(case)?;
+            if !built && !corrected {
+                break;
+            }
+            let usable = self.usable.clone();
+            self.again(case, &usable)?;
+        }
+        Ok(())
+    }
+
+    /// Takes faults of sensors out of the recordings. Whether there were any.
+    fn correct(&self, case: &mut Case) -> Result<bool, DiagnoseError> {
+        /// A rest that is this share of the fault, or this share of its usual size, is none.
+        const NEARLY: f64 = 0.1;
+        let mut corrections = case.corrections.clone();
+        let mut more = false;
+        for correction in &mut corrections {
+            let column = self.pool.corrected.iter().find(|(id, _)| *id == correction.id);
+            let rest = column.map_or(0.0, |(_, column)| self.found.estimate.beta[*column]);
+            let usual = case.causes[correction.accepted.trial.cause].terms[0].scale;
+            more |= rest.abs() > NEARLY * correction.value.abs().max(usual);
+            correction.value += rest;
+        }
+        for accepted in &self.found.accepted {
+            let id = case.causes[accepted.trial.cause].id;
+            let position = self.found.used.iter().position(|used| *used == accepted.trial.columns[0]);
+            if let (true, Some(position)) =
+                (["latency", "speed_scale", "force_scale"].contains(&id), position)
+            {
+                let value = self.found.estimate.beta[position];
+                corrections.push(Correction { id, value, accepted: accepted.clone() });
+                more = true;
+            }
+        }
+        let small: Vec<&'static str> = corrections
+            .iter()
+            .filter(|correction| sensors::petty(case, correction.id, correction.value))
+            .map(|correction| correction.id)
+            .collect();
+        if !more && small.is_empty() {
+            return Ok(false);
+        }
+        corrections.retain(|correction| !small.contains(&correction.id));
+        case.petty.extend(small);
+        case.correct(corrections)?;
+        Ok(true)
+    }
+
+    /// Searches once more with shapes between the points of the grids, and with causes as they are at their size.
+    pub fn sharpen(&mut self, case: &Case) -> Result<(), DiagnoseError> {
+        let finer = sharpen::sharpen(case, &self.system, &mut self.pool, &self.found)?;
+        let bent = bend::bend(case, &self.system, &mut self.pool, &self.found)?;
+        if finer || bent {
+            self.found = searched(case, &self.system, &self.pool)?;
+        }
+        Ok(())
+    }
+
+    /// What was found, on as many rows as there are, each of which may stray.
+    pub fn closer(self, case: &mut Case) -> Result<(System, Pool, Found), DiagnoseError> {
+        case.step("strange rows")?;
+        case.rows = Rows::Many;
+        let system = case.system(&self.usable);
+        if system.blocks_s == self.system.blocks_s {
+            let found = straying::straying(case, &self.system, &self.pool, self.found, None);
+            return Ok((self.system, self.pool, found));
+        }
+        let mut pool = pool(case, &system)?;
+        let parts = again(case, &system, &mut pool, &self.found.stand.parts)?;
+        let state = State { case, system: &system, pool: &pool, fit: &case.fit };
+        let Some(stands) = from(&state, &parts) else {
+            case.rows = Rows::Few;
+            return Ok((self.system, self.pool, self.found));
+        };
+        let found = straying::straying(case, &system, &pool, self.found, Some(stands));
+        Ok((system, pool, found))
+    }
+}
+
+fn prepared(case: &Case, usable: &[Vec<bool>]) -> Result<(System, Pool), DiagnoseError> {
+    let system = case.system(usable);
+    if system.kinds.is_empty() {
+        return Err(DiagnoseError::NoBalance { channels: case.channels() });
+    }
+    let pool = pool(case, &system)?;
+    Ok((system, pool))
+}
+
+fn searched(case: &Case, system: &System, pool: &Pool) -> Result<Found, DiagnoseError> {
+    case.step("searching")?;
+    search(case, system, pool).ok_or_else(|| DiagnoseError::NoBalance { channels: case.channels() })
+}
+
+/// The same causes by the columns of another pool, but for what was corrected meanwhile.
+fn again(case: &Case, system: &System, pool: &mut Pool, parts: &[Part]) -> Result<Vec<Part>, DiagnoseError> {
+    let mut all = Vec::new();
+    for part in parts {
+        let wanted = &part.trial;
+        let id = case.causes[wanted.cause].id;
+        let corrected = case.corrections.iter().any(|correction| correction.id == id);
+        if corrected || case.petty.contains(&id) {
+            continue;
+        }
+        let same = |trial: &&Trial| {
+            trial.cause == wanted.cause && trial.shape == wanted.shape && trial.terms == wanted.terms
+        };
+        if !pool.trials.iter().any(|trial| same(&trial)) {
+            add_trial(case, system, pool, wanted.cause, &wanted.shape)?;
+        }
+        if let Some(trial) = pool.trials.iter().find(same) {
+            all.push(Part { trial: trial.clone(), spread: part.spread.clone() });
+        }
+    }
+    Ok(all)
+}
+
+/// The free parameters alone, and with causes.
+fn from(state: &State, parts: &[Part]) -> Option<(Stand, Stand)> {
+    let (system, fit) = (state.system, state.fit);
+    let first = state.settle(&[], &system.noises(&system.residual, fit))?;
+    let loud = state.settle(parts, &first.noises);
+    // What a function leaves out passes for noise, and would let no function follow: it is asked from both sides.
+    let quiet = state.settle(parts, &state.quiet(loud.as_ref().unwrap_or(&first)));
+    let best = [loud, quiet].into_iter().flatten().max_by(|one, other| one.score.total_cmp(&other.score))?;
+    Some((first, best))
+}
+
+impl State<'_> {
+    /// A set with the causes beside that the recordings ask for besides, the best first, and without those that they do not
+    /// ask for any more.
+    fn grown(&self, first: Stand, mut best: Stand, before: &Found) -> Option<Found> {
+        let mut needed = before.needed;
+        while best.parts.len() < MOST_CAUSES {
+            let reduced = self.reduced(&best.noises, &best.parts)?;
+            needed = LEAST_GAIN.max(self.chance(&best, &reduced));
+            let able = |one: &Contest| {
+                let timed = one.stand.parts.last().is_some_and(|part| self.timed(part));
+                let needed = needed.max(PER_CAUSE) + if timed { NO_OTHER_RUN } else { 0.0 };
+                one.stand.score - best.score >= needed && worth(&one.stand) > worth(&best)
+            };
+            let judged = self.contest(&best, &reduced, &[]).into_iter();
+            let next = judged.filter(able).find(|one| self.sensible(&one.stand));
+            let Some(next) = next else { break };
+            best = next.stand;
+        }
+        self.conclude(best, first, before.tried.clone(), needed)
+    }
+}

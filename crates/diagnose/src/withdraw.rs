@@ -1,6 +1,7 @@
 //! Claims that do not hold where nothing was fitted: what makes runs worse that it never saw is not known.
 
 use crate::balance::Kind;
+use crate::catalogue::Form;
 use crate::contradiction::withhold;
 use crate::events::Event;
 use crate::prove::{Proof, prove, told_by};
@@ -90,12 +91,22 @@ fn nothing_left(case: &Case, found: &Found) -> String {
     )
 }
 
-/// The same without one cause, unless it is one that no other run can show.
+/// Whether no run held out can tell of a cause: it is a function of time, or of paths that none of them drove.
+fn beyond(state: &State, part: &Part) -> bool {
+    let case = state.case;
+    let paths = |fit: bool| {
+        (0..case.runs.len()).filter(move |run| case.fit[*run] == fit).map(|run| case.runs[run].path)
+    };
+    let shared = paths(false).any(|path| paths(true).any(|own| own == path));
+    state.timed(part) || state.cause(&part.trial).form == Form::OverPosition && !shared
+}
+
+/// The same without one cause, unless no run held out can tell of it.
 fn without(case: &Case, system: &System, pool: &Pool, found: &Found, place: usize) -> Option<Found> {
     let state = State { case, system, pool, fit: &case.fit };
     let mut parts: Vec<Part> = found.stand.parts.clone();
     let part = parts.remove(place);
-    if state.timed(&part) {
+    if beyond(&state, &part) {
         return None;
     }
     let stand = state.settle(&parts, &found.stand.noises)?;

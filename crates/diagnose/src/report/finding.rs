@@ -233,7 +233,11 @@ fn parameters(cured: &Cured) -> Vec<ParameterReport> {
     match cured.cause.id {
         "wind" => {
             let [(north, north_ci), (east, east_ci), ..] = cured.values[..] else { return Vec::new() };
-            let sd = |ci: [f64; 2]| (ci[1] - ci[0]) / (2.0 * HALF_95);
+            // A part that was not needed is no better known than the other.
+            let sd = |ci: [f64; 2]| {
+                let own = |ci: [f64; 2]| (ci[1] - ci[0]) / (2.0 * HALF_95);
+                if own(ci) > 0.0 { own(ci) } else { own(north_ci).max(own(east_ci)) }
+            };
             let speed = north.hypot(east);
             let from = east.atan2(north).rem_euclid(std::f64::consts::TAU);
             let along = (north * sd(north_ci)).hypot(east * sd(east_ci)) / speed.max(1e-9);

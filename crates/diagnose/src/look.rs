@@ -3,7 +3,7 @@
 use crate::balance::{Rows, System};
 use crate::case::Correction;
 use crate::contest::Contest;
-use crate::search::{Found, LEAST_GAIN, MOST_CAUSES, NO_OTHER_RUN, PER_CAUSE, search, worth};
+use crate::search::{Found, LEAST_GAIN, MOST_CAUSES, PER_CAUSE, search, worth};
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Trial, add_trial, pool};
 use crate::{Case, DiagnoseError, bend, sensors, sharpen, straying};
@@ -190,9 +190,7 @@ impl State<'_> {
             let reduced = self.reduced(&best.noises, &best.parts)?;
             needed = LEAST_GAIN.max(self.chance(&best, &reduced));
             let able = |one: &Contest| {
-                let timed = one.stand.parts.last().is_some_and(|part| self.timed(part));
-                let needed = needed.max(PER_CAUSE) + if timed { NO_OTHER_RUN } else { 0.0 };
-                one.stand.score - best.score >= needed && worth(&one.stand) > worth(&best)
+                self.growth(one, &best) >= needed.max(PER_CAUSE) && worth(&one.stand) > worth(&best)
             };
             let judged = self.contest(&best, &reduced, &[]).into_iter();
             let next = judged.filter(able).find(|one| self.sensible(&one.stand));

@@ -88,7 +88,7 @@ const BEAM: usize = 6;
 /// Each cause more makes a set less likely from the start: odds of one to twenty.
 pub const PER_CAUSE: f64 = 3.0;
 /// A function of time is shown by no other run: it takes so much more.
-pub const NO_OTHER_RUN: f64 = 20.0;
+const NO_OTHER_RUN: f64 = 20.0;
 /// A growth of ln p within this of the best one does not tell the two apart: odds of one to twenty.
 const TOLERANCE: f64 = 3.0;
 /// No growth below this counts, whatever chance can do: odds of a thousand to one, because no model of a vehicle is exact and
@@ -133,10 +133,7 @@ pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]
                     causes: judged.iter().map(|one| one.told(stand.score)).collect(),
                 });
             }
-            let able = judged.into_iter().filter(|one| {
-                let timed = one.stand.parts.last().is_some_and(|part| state.timed(part));
-                one.stand.score - stand.score >= needed + if timed { NO_OTHER_RUN } else { 0.0 }
-            });
+            let able = judged.into_iter().filter(|one| state.growth(one, stand) >= needed);
             grown.extend(able.map(|one| one.stand).filter(|stand| state.sensible(stand)).take(BEAM));
         }
         grown.sort_by(|one, other| other.score.total_cmp(&one.score));
@@ -281,6 +278,13 @@ impl State<'_> {
     pub fn timed(&self, part: &Part) -> bool {
         let cause = self.cause(&part.trial);
         cause.run.is_some() || part.spread.is_some() && cause.form == Form::OverTime
+    }
+
+    /// What one cause more brings to a set: growth of ln p, less what a function of time has to bring because no other run
+    /// shows it.
+    pub fn growth(&self, one: &Contest, stand: &Stand) -> f64 {
+        let timed = one.stand.parts.last().is_some_and(|part| self.timed(part));
+        one.stand.score - stand.score - if timed { NO_OTHER_RUN } else { 0.0 }
     }
 
     /// Whether any two fitted runs drove the same path.

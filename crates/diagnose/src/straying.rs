@@ -7,7 +7,7 @@
 use crate::contest::Contest;
 use crate::noise::Noises;
 use crate::profile::{FINE, Function};
-use crate::search::{Found, LEAST_GAIN, MOST_CAUSES, NO_OTHER_RUN, PER_CAUSE};
+use crate::search::{Found, LEAST_GAIN, MOST_CAUSES, PER_CAUSE};
 use crate::state::{Part, Stand, State};
 use crate::tails::Tails;
 use crate::trial::Pool;
@@ -44,11 +44,7 @@ impl State<'_> {
         for _ in 0..MOST_CAUSES {
             let reduced = self.reduced(&best.noises, &best.parts)?;
             let needed = PER_CAUSE + LEAST_GAIN.max(self.chance(&best, &reduced));
-            let able = |one: &Contest| {
-                let timed = one.stand.parts.last().is_some_and(|part| self.timed(part));
-                one.stand.score - best.score >= needed + if timed { NO_OTHER_RUN } else { 0.0 }
-                    && self.sensible(&one.stand)
-            };
+            let able = |one: &Contest| self.growth(one, &best) >= needed && self.sensible(&one.stand);
             let Some(next) = self.contest(&best, &reduced, &[]).into_iter().find(able) else { break };
             best = next.stand;
         }

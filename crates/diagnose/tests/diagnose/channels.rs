@@ -1,47 +1,14 @@
 //! Runs that lack a channel, and balances from channels that are not powers or forces themselves.
 
-use super::setting::{found, named, scenario};
+use super::setting::{found, named, recording_of};
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{Diagnosed, Options};
-use headland_recording::{RecordedRun, Recording};
-use headland_scenario::Scenario;
-use headland_sim::simulate;
-use headland_trace::{Origin, Trace};
-use std::path::{Path, PathBuf};
+use headland_recording::Recording;
 
 /// The five drives with these channels, each sample changed as is said: name, sample, a draw of noise.
 fn recorded(effects: &str, channels: &[&str], sensor: impl Fn(&str, f64, f64) -> f64) -> Recording {
-    let registry = headland_stock::registry();
-    let text = scenario(0.069, effects, "");
-    let scenario = Scenario::of_text("truth.ron", &text, Path::new(""), &registry).unwrap();
-    let runs = scenario.runs.iter().enumerate().map(|(number, spec)| {
-        let scenario = scenario.run(spec, &registry).unwrap();
-        let model = scenario.model(&registry).unwrap();
-        let outcome = simulate(&model, scenario.cycle.as_ref().unwrap()).unwrap();
-        let mut draws = Draws::new(23, number as u64);
-        let mut trace = Trace::new(outcome.trace.time_s().to_vec()).unwrap();
-        for name in channels {
-            let values = outcome.trace.get(name).unwrap();
-            let values = values.iter().map(|value| sensor(name, *value, draws.normal())).collect();
-            trace.push(*name, values, Origin::Measured).unwrap();
-        }
-        RecordedRun {
-            id: spec.id.clone(),
-            trace,
-            path: Some("lane".to_owned()),
-            reversed: false,
-            held_out: number == 4,
-            known: Vec::new(),
-            sensors: Vec::new(),
-        }
-    });
-    Recording {
-        about: "simulated".to_owned(),
-        path: PathBuf::from("recording.ron"),
-        runs: runs.collect(),
-        known: Vec::new(),
-        notices: Vec::new(),
-    }
+    let noisy = |name: &str, value: f64, draws: &mut Draws| sensor(name, value, draws.normal());
+    recording_of((0.069, effects), &headland_stock::registry(), channels, (23, &noisy))
 }
 
 fn noted(found: &Diagnosed, what: &str) -> bool {

@@ -73,22 +73,34 @@ pub fn recorded(coefficient: f64, effects: &str) -> Recording {
 
 /// As [`recorded`], with effects of a registry.
 pub fn recorded_with(coefficient: f64, effects: &str, registry: &Registry) -> Recording {
+    let noisy = |name: &str, value: f64, draws: &mut Draws| {
+        if name == "speed_m_s" { value + 0.02 * draws.normal() } else { value }
+    };
+    recording_of((coefficient, effects), registry, &CHANNELS, (11, &noisy))
+}
+
+/// What a sensor makes of a sample: name of the channel, sample, draws of noise.
+pub type Sensor<'a> = &'a dyn Fn(&str, f64, &mut Draws) -> f64;
+
+/// The five drives with these channels, each sample as its sensor shows it; draws begin at a seed.
+pub fn recording_of(
+    (coefficient, effects): (f64, &str),
+    registry: &Registry,
+    channels: &[&str],
+    (seed, sensor): (u64, Sensor),
+) -> Recording {
     let text = scenario(coefficient, effects, "");
     let scenario = Scenario::of_text("truth.ron", &text, Path::new(""), registry).unwrap();
     let runs = scenario.runs.iter().enumerate().map(|(number, spec)| {
         let scenario = scenario.run(spec, registry).unwrap();
         let model = scenario.model(registry).unwrap();
         let outcome = simulate(&model, scenario.cycle.as_ref().unwrap()).unwrap();
-        let mut draws = Draws::new(11, number as u64);
+        let mut draws = Draws::new(seed, number as u64);
         let mut trace = Trace::new(outcome.trace.time_s().to_vec()).unwrap();
-        for name in CHANNELS {
-            let mut values = outcome.trace.get(name).unwrap().to_vec();
-            if name == "speed_m_s" {
-                for value in &mut values {
-                    *value += 0.02 * draws.normal();
-                }
-            }
-            trace.push(name, values, Origin::Measured).unwrap();
+        for name in channels {
+            let values = outcome.trace.get(name).unwrap();
+            let values = values.iter().map(|value| sensor(name, *value, &mut draws)).collect();
+            trace.push(*name, values, Origin::Measured).unwrap();
         }
         RecordedRun {
             id: spec.id.clone(),

@@ -1,14 +1,16 @@
 """What a diagnosis that knows one dimension makes of recordings of the rigid body in turns.
 
-    python benches/peers/turns.py target/release/headland [--markdown docs/evidence/turns.md]
+    python benches/peers/turns.py target/release/headland [--markdown docs/evidence/turns.md] [--rerun out/turns]
 
 The runs of `scenarios/coast_down_turns.ron`, with the noise of a speed sensor, are given to `headland diagnose` with the same
-scenario. Needs `numpy` and `pyarrow`.
+scenario. With `--rerun` the diagnosis is drawn for the Rerun viewer too, and everything is kept in the folder that it names. Needs `numpy`
+and `pyarrow`.
 """
 
 import argparse
 import json
 import pathlib
+import shutil
 import subprocess
 import tempfile
 
@@ -23,6 +25,7 @@ def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("program")
     arguments.add_argument("--markdown", type=pathlib.Path)
+    arguments.add_argument("--rerun", type=pathlib.Path, metavar="FOLDER")
     chosen = arguments.parse_args()
     random = np.random.default_rng(SEED)
     with tempfile.TemporaryDirectory() as name:
@@ -54,9 +57,13 @@ def main():
             np.savetxt(folder / f"{run}.csv", table, delimiter=",", header=",".join(recorded), comments="", fmt="%.6f")
         runs = ", ".join(f'(id: "{run}", file: "{run}.csv")' for run in names)
         (folder / "recording.ron").write_text(f'(about: "coast-downs of the rigid body", runs: [{runs}])')
-        done = subprocess.run([chosen.program, "diagnose", str(SCENARIO), "--recording", str(folder / "recording.ron"),
-                               "--out", str(folder / "diagnosis"), "--quiet", "--json"],
-                              capture_output=True, text=True, check=True)
+        asked = [chosen.program, "diagnose", str(SCENARIO), "--recording", str(folder / "recording.ron"),
+                 "--out", str(folder / "diagnosis"), "--quiet", "--json"]
+        if chosen.rerun:
+            asked.append("--rerun")
+        done = subprocess.run(asked, capture_output=True, text=True, check=True)
+        if chosen.rerun:
+            shutil.copytree(folder, chosen.rerun, dirs_exist_ok=True)
     found = json.loads(done.stdout)
     text = f"{found['verdict']}: {found['answer']}\n\nThe greatest sideways acceleration of the runs is {steepest:.1f} m/s²."
     print(text)

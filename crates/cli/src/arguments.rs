@@ -82,7 +82,7 @@ pub struct RunOptions {
 /// Whether and how runs are drawn by Rerun.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct RerunOptions {
-    /// Write `run.rrd` for the Rerun viewer as well
+    /// Write a file for the Rerun viewer as well: `run.rrd`, `diagnosis.rrd`
     #[arg(long)]
     pub rerun: bool,
     /// Open the Rerun viewer
@@ -141,6 +141,9 @@ pub struct DiagnoseOptions {
     /// Try just this cause; repeatable
     #[arg(long, value_name = "ID")]
     pub only: Vec<String>,
+    /// Pictures
+    #[command(flatten)]
+    pub picture: RerunOptions,
 }
 
 /// Options of `headland coastdown`.

@@ -19,6 +19,8 @@ mod held;
 mod output;
 mod pace;
 mod page;
+#[cfg(feature = "rerun")]
+mod painted;
 mod picture;
 mod say;
 #[cfg(feature = "rerun")]

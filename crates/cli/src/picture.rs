@@ -4,10 +4,14 @@ use crate::arguments::RerunOptions;
 use crate::failure::Failure;
 use crate::held::Pair;
 use crate::output::Output;
+#[cfg(feature = "rerun")]
+use crate::painted;
 use crate::say::Say;
 #[cfg(feature = "rerun")]
 use crate::scenery::{self, Stage};
+use headland_diagnose::Diagnosed;
 use headland_plugin::Registry;
+use headland_recording::Recording;
 use headland_scenario::Scenario;
 use headland_trace::Run;
 use std::path::PathBuf;
@@ -132,6 +136,42 @@ pub fn draw(wanted: Wanted, drawn: &Drawn, output: &mut Output) -> Result<Pictur
     };
     let path = output.file("run.rrd");
     headland_view::write(&scene, &path).map_err(refused)?;
+    opened(wanted, path)
+}
+
+/// Writes `diagnosis.rrd` and opens the viewer, as wanted.
+#[cfg(not(feature = "rerun"))]
+pub fn draw_diagnosis(
+    wanted: Wanted,
+    _: &str,
+    _: &Recording,
+    _: &Diagnosed,
+    _: &mut Output,
+) -> Result<Picture, Failure> {
+    wanted.possible().map(|()| Picture { served: None })
+}
+
+/// Writes `diagnosis.rrd` and opens the viewer, as wanted.
+#[cfg(feature = "rerun")]
+pub fn draw_diagnosis(
+    wanted: Wanted,
+    title: &str,
+    recording: &Recording,
+    found: &Diagnosed,
+    output: &mut Output,
+) -> Result<Picture, Failure> {
+    if !wanted.write {
+        return Ok(Picture { served: None });
+    }
+    let (runs, words) = (painted::runs(recording), painted::Words::of(&found.diagnosis));
+    let path = output.file("diagnosis.rrd");
+    headland_view::write_diagnosis(&painted::painted(title, found, &runs, &words), &path).map_err(refused)?;
+    opened(wanted, path)
+}
+
+/// The viewer opened on a file, as wanted.
+#[cfg(feature = "rerun")]
+fn opened(wanted: Wanted, path: PathBuf) -> Result<Picture, Failure> {
     if wanted.view {
         headland_view::show(&path).map_err(refused)?;
     }

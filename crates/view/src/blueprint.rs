@@ -3,21 +3,14 @@
 use crate::entity::{self, Who};
 use crate::groups::{Group, Rank};
 use crate::lanes::Lane;
+use crate::layout::{LEGEND, Layout, Node};
 use crate::path::Pose;
 use crate::plots::{COMPARED, residual};
-use crate::recorder::{Recorder, TIMELINE, encode, nanoseconds};
 use crate::{Scene, ViewError};
-use rerun::datatypes::{TimeInt, TimeRange, TimeRangeBoundary};
-use rerun::external::re_log_types::{BlueprintActivationCommand, StoreKind};
-use rerun::external::re_sdk_types::blueprint::archetypes::{
-    Background, ContainerBlueprint, EyeControls3D, LineGrid3D, PanelBlueprint, PlotLegend, TimeAxis,
-    TimePanelBlueprint, ViewBlueprint, ViewContents, ViewportBlueprint,
-};
-use rerun::external::re_sdk_types::blueprint::components::{
-    BackgroundKind, ContainerKind, Corner2D, LoopMode, PanelState, PlayState,
-};
+use rerun::external::re_sdk_types::blueprint::archetypes::{Background, EyeControls3D, LineGrid3D};
+use rerun::external::re_sdk_types::blueprint::components::{BackgroundKind, ContainerKind};
 use rerun::log::LogMsg;
-use rerun::{ApplicationId, AsComponents, EntityPath, RecordingStreamBuilder};
+use rerun::{ApplicationId, AsComponents, EntityPath};
 
 /// The messages that make the layout, and the one that puts it into force.
 pub(crate) fn messages(
@@ -26,37 +19,24 @@ pub(crate) fn messages(
     groups: &[Group],
     lanes: &[Lane],
 ) -> Result<Vec<LogMsg>, ViewError> {
-    let to = Recorder::new(RecordingStreamBuilder::new(application.clone()).blueprint())?;
-    to.stream().set_time_sequence("blueprint", 0);
-    let mut layout = Layout { to, nodes: 0, times_s: times_s(lanes) };
+    let mut layout = Scenic { layout: Layout::new(application)?, times_s: times_s(lanes) };
     let space = layout.space(scene, lanes)?;
-    let text = layout.view("TextDocument", "About", &[entity::summary()], &[])?;
-    let left = layout.split(ContainerKind::Vertical, "", &[space, text], &[5.0, 1.0])?;
+    let text = layout.layout.view("TextDocument", "About", &[entity::summary()], &[])?;
+    let left = layout.layout.split(ContainerKind::Vertical, "", &[space, text], &[5.0, 1.0])?;
     let right = layout.plots(groups, lanes)?;
-    let root = layout.split(ContainerKind::Horizontal, "", &[left, right], &[6.0, 5.0])?;
-    layout.frame(&root)?;
-    let mut messages = layout.to.finish();
-    let blueprint_id = messages
-        .iter()
-        .map(|message| message.store_id().clone())
-        .find(|store| store.kind() == StoreKind::Blueprint)
-        .ok_or_else(|| encode("the layout is empty"))?;
-    let activation = BlueprintActivationCommand { blueprint_id, make_active: true, make_default: true };
-    messages.push(activation.into());
-    Ok(messages)
+    let root = layout.layout.split(ContainerKind::Horizontal, "", &[left, right], &[6.0, 5.0])?;
+    layout.layout.finish(&root)
 }
 
 /// Behind everything in space: dark enough for light labels.
 const SKY: [u8; 3] = [34, 44, 56];
-/// How much longer than the runs the plots are, so that their legend hides no line.
-const LEGEND: f64 = 0.3;
 
-/// First and last time of all runs [s], the last one with room for the legend.
+/// First and last time of all runs [s].
 fn times_s(lanes: &[Lane]) -> [f64; 2] {
     let runs = || lanes.iter().flat_map(|lane| [Some(lane.run), lane.recording]).flatten();
     let first = runs().filter_map(|run| run.trace.time_s().first()).copied().fold(f64::INFINITY, f64::min);
     let last = runs().filter_map(|run| run.trace.time_s().last()).copied().fold(f64::NEG_INFINITY, f64::max);
-    [first, last + LEGEND * (last - first)]
+    [first, last]
 }
 
 /// The direction from the first place to the last one; that of the start where these are close to each other.
@@ -71,78 +51,13 @@ fn main_heading_rad(poses: &[Pose], start_rad: f64) -> f64 {
     }
 }
 
-/// A view or a container.
-#[derive(Clone)]
-struct Node {
-    id: [u8; 16],
-    path: EntityPath,
-}
-
-struct Layout {
-    to: Recorder,
-    nodes: u32,
+/// The layout of a scene.
+struct Scenic {
+    layout: Layout,
     times_s: [f64; 2],
 }
 
-impl Layout {
-    fn log(&self, at: impl Into<EntityPath>, what: &dyn AsComponents) -> Result<(), ViewError> {
-        self.to.stream().log(at, what).map_err(encode)
-    }
-
-    /// A new node: its number as a random UUID would be written.
-    fn node(&mut self, kind: &str) -> Node {
-        self.nodes += 1;
-        let mut id = [0x48, 0x65, 0x61, 0x64, 0x6c, 0x61, 0x4e, 0x64, 0x80, 0, 0, 0, 0, 0, 0, 0];
-        id[12..].copy_from_slice(&self.nodes.to_be_bytes());
-        let mut text = format!("{:032x}", u128::from_be_bytes(id));
-        for dash in [20, 16, 12, 8] {
-            text.insert(dash, '-');
-        }
-        Node { id, path: format!("{kind}/{text}").into() }
-    }
-
-    fn view(
-        &mut self,
-        class: &str,
-        name: &str,
-        contents: &[EntityPath],
-        properties: &[(&str, &dyn AsComponents)],
-    ) -> Result<Node, ViewError> {
-        let node = self.node("view");
-        let queries = contents.iter().map(|path| format!("+ {path}/**"));
-        let sub = |name: &str| entity::part(&node.path, name);
-        self.log(sub("ViewContents"), &ViewContents::new(queries))?;
-        let view = ViewBlueprint::new(class).with_display_name(name).with_space_origin("/");
-        self.log(node.path.clone(), &view)?;
-        for (name, property) in properties {
-            self.log(sub(name), *property)?;
-        }
-        Ok(node)
-    }
-
-    fn split(
-        &mut self,
-        kind: ContainerKind,
-        name: &str,
-        parts: &[Node],
-        shares: &[f32],
-    ) -> Result<Node, ViewError> {
-        let node = self.node("container");
-        let mut container =
-            ContainerBlueprint::new(kind).with_contents(parts.iter().map(|part| part.path.to_string()));
-        if !name.is_empty() {
-            container = container.with_display_name(name);
-        }
-        let shares = shares.iter().copied();
-        container = match kind {
-            ContainerKind::Horizontal => container.with_col_shares(shares),
-            ContainerKind::Vertical => container.with_row_shares(shares),
-            ContainerKind::Tabs | ContainerKind::Grid => container,
-        };
-        self.log(node.path.clone(), &container)?;
-        Ok(node)
-    }
-
+impl Scenic {
     /// The world, seen from beside the first vehicle, which the eye follows.
     fn space(&mut self, scene: &Scene, lanes: &[Lane]) -> Result<Node, ViewError> {
         let Some((first, pose)) = lanes.first().zip(lanes.first().and_then(|lane| lane.path.poses.first()))
@@ -168,7 +83,7 @@ impl Layout {
         let sky = Background::new(BackgroundKind::SolidColor).with_color(SKY);
         let properties: [(&str, &dyn AsComponents); 3] =
             [("EyeControls3D", &eye), ("LineGrid3D", &grid), ("Background", &sky)];
-        self.view("3D", "Vehicle", &[entity::world()], &properties)
+        self.layout.view("3D", "Vehicle", &[entity::world()], &properties)
     }
 
     /// The plots of one run, or a tab for each run.
@@ -191,7 +106,7 @@ impl Layout {
         if let [only] = tabs.as_slice() {
             return Ok(only.clone());
         }
-        self.split(ContainerKind::Tabs, "Runs", &tabs, &[])
+        self.layout.split(ContainerKind::Tabs, "Runs", &tabs, &[])
     }
 
     /// Speed, its residual, forces, powers, and tabs for wheels and for the rest.
@@ -238,36 +153,15 @@ impl Layout {
         }
         for (title, tabs) in [("Wheels", wheels), ("More", rest)] {
             if !tabs.is_empty() {
-                parts.push(self.split(ContainerKind::Tabs, title, &tabs, &[])?);
+                parts.push(self.layout.split(ContainerKind::Tabs, title, &tabs, &[])?);
                 shares.push(3.0);
             }
         }
-        self.split(ContainerKind::Vertical, name, &parts, &shares)
+        self.layout.split(ContainerKind::Vertical, name, &parts, &shares)
     }
 
     fn plot(&mut self, title: &str, lines: &[EntityPath]) -> Result<Node, ViewError> {
-        let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
-        let [from, to] = self.times_s.map(|time_s| TimeRangeBoundary::Absolute(TimeInt(nanoseconds(time_s))));
-        let axis = TimeAxis::new().with_view_range(TimeRange { start: from, end: to });
-        self.view("TimeSeries", title, lines, &[("PlotLegend", &legend), ("TimeAxis", &axis)])
-    }
-
-    /// What lies around the views.
-    fn frame(&self, root: &Node) -> Result<(), ViewError> {
-        let viewport = ViewportBlueprint::new()
-            .with_root_container(root.id)
-            .with_auto_layout(false)
-            .with_auto_views(false);
-        self.log("viewport", &viewport)?;
-        for panel in ["blueprint_panel", "selection_panel"] {
-            self.log(panel, &PanelBlueprint::new().with_state(PanelState::Hidden))?;
-        }
-        let time = TimePanelBlueprint::new()
-            .with_state(PanelState::Collapsed)
-            .with_timeline(TIMELINE)
-            .with_play_state(PlayState::Playing)
-            .with_loop_mode(LoopMode::All);
-        self.log("time_panel", &time)
+        self.layout.plot(title, lines, self.times_s, LEGEND)
     }
 }
 

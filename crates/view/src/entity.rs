@@ -51,6 +51,31 @@ pub(crate) fn summary() -> EntityPath {
     entity(&["summary"])
 }
 
+/// What a diagnosis answers, and what else could be the cause.
+pub(crate) fn words(what: &str) -> EntityPath {
+    entity(&["words", what])
+}
+
+/// A part of the plan on which a mismatch is painted.
+pub(crate) fn painted(part: &str, run: &str) -> EntityPath {
+    entity(&["plan", part, run])
+}
+
+/// The same of all runs.
+pub(crate) fn painted_parts(part: &str) -> EntityPath {
+    entity(&["plan", part])
+}
+
+/// A part of the map of a mismatch over something.
+pub(crate) fn mapped(over: &str, part: &str) -> EntityPath {
+    entity(&["maps", over, part])
+}
+
+/// A line of a run in a diagnosis.
+pub(crate) fn diagnosed(run: &str, plot: &str, line: &str) -> EntityPath {
+    entity(&["diagnosed", run, plot, line])
+}
+
 /// Where a line or a vehicle comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Who {

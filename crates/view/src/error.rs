@@ -69,6 +69,18 @@ pub enum ViewError {
         /// What it has to be.
         expected: &'static str,
     },
+    /// Numbers that stand row by row and are not as many.
+    #[error("`{name}` of run `{run}` has {found} rows, expected {expected}")]
+    Rows {
+        /// The run.
+        run: String,
+        /// What the numbers are.
+        name: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many times there are.
+        expected: usize,
+    },
     /// Rerun refused the data.
     #[error("the recording could not be encoded: {reason}")]
     Encode {

@@ -21,7 +21,11 @@ use std::path::Path;
 /// # Errors
 /// [`ViewError`]: a scene that cannot be drawn, [`ViewError::File`] where the file system refuses.
 pub fn write(scene: &Scene, path: &Path) -> Result<(), ViewError> {
-    let messages = messages(scene)?;
+    store(messages(scene)?, path)
+}
+
+/// Writes messages to a file, which appears whole or not at all.
+pub(crate) fn store(messages: Vec<LogMsg>, path: &Path) -> Result<(), ViewError> {
     let mut bytes = Vec::new();
     let stored = messages.into_iter().map(Ok::<LogMsg, _>);
     Encoder::encode_into(CrateVersion::LOCAL, EncodingOptions::PROTOBUF_COMPRESSED, stored, &mut bytes)
@@ -36,18 +40,24 @@ pub fn write(scene: &Scene, path: &Path) -> Result<(), ViewError> {
     stored.map_err(file_error)
 }
 
-/// Everything that the file holds: the layout first, so that the viewer has it before the data.
-pub(crate) fn messages(scene: &Scene) -> Result<Vec<LogMsg>, ViewError> {
-    scene.check()?;
-    let lanes = lanes(scene)?;
-    let groups = groups::groups(scene);
-    let title = if scene.title.trim().is_empty() { "Headland" } else { scene.title };
+/// A recording of this title.
+pub(crate) fn begun(title: &str) -> Result<(ApplicationId, Recorder), ViewError> {
+    let title = if title.trim().is_empty() { "Headland" } else { title };
     // A name of other characters would get a number behind it.
     let plain = |letter: &char| letter.is_ascii_alphanumeric() || matches!(letter, ' ' | '-' | '_');
     let name: String = title.chars().filter(plain).collect();
     let name = if name.trim().is_empty() { "Headland" } else { name.trim() };
     let application = ApplicationId::try_new(name).map_err(encode)?;
     let to = Recorder::new(RecordingStreamBuilder::new(application.clone()).recording_name(title))?;
+    Ok((application, to))
+}
+
+/// Everything that the file holds: the layout first, so that the viewer has it before the data.
+pub(crate) fn messages(scene: &Scene) -> Result<Vec<LogMsg>, ViewError> {
+    scene.check()?;
+    let lanes = lanes(scene)?;
+    let groups = groups::groups(scene);
+    let (application, to) = begun(scene.title)?;
     let grounds = surroundings::draw(&to, scene, &lanes)?;
     let newton_per_m = forces::newton_per_m(scene);
     let scales = Scales {

@@ -2,7 +2,8 @@
 //! all on one timeline called `time`, in seconds.
 //!
 //! [`write()`] makes the file, [`show`] starts the viewer on it, [`open`] does both, [`serve`] serves it to browsers. Of a run with its recording both
-//! vehicles are drawn, the recorded one transparent, and both lines stand in the same plot.
+//! vehicles are drawn, the recorded one transparent, and both lines stand in the same plot. [`write_diagnosis`] makes the file of a
+//! diagnosis: where a model and a recording part, and what was found there.
 
 mod balance;
 mod blueprint;
@@ -14,7 +15,9 @@ mod forces;
 mod ground;
 mod groups;
 mod lanes;
+mod layout;
 mod mesh;
+mod mismatch;
 mod path;
 mod plots;
 mod recorder;
@@ -37,6 +40,7 @@ mod wheels;
 pub use error::ViewError;
 pub use file::write;
 pub use ground::Ground;
+pub use mismatch::{Diagnosis, Effect, Left, Shown, write_diagnosis};
 pub use scene::{Axis, Body, ForceArrow, Scene};
 pub use setting::{Relief, Rig, RigWheel, Setting, Towed};
 pub use viewer::{Server, VIEWER_VERSION, open, serve, show};

@@ -71,7 +71,8 @@ pub(crate) fn residual(run: &Run, recording: &Run) -> Option<Vec<f64>> {
     residual.iter().any(|value| value.is_finite()).then_some(residual)
 }
 
-fn line(
+/// One line, with its name, colour and width in points.
+pub(crate) fn line(
     to: &Recorder,
     at: &EntityPath,
     name: &str,

@@ -5,6 +5,7 @@ use crate::failure::{Failure, interrupted};
 use crate::held;
 use crate::output::Output;
 use crate::page;
+use crate::picture::{Wanted, draw_diagnosis};
 use crate::say::Say;
 use headland_diagnose::{DiagnoseError, Diagnosed, Options, Progress, diagnose as find};
 use headland_plugin::Registry;
@@ -36,6 +37,8 @@ impl From<DiagnoseError> for Failure {
 
 /// Runs the command.
 pub fn diagnose(registry: &Registry, options: &DiagnoseOptions, seed: u64, say: Say) -> Result<(), Failure> {
+    let drawn = Wanted::of(options.picture);
+    drawn.possible()?;
     let scenario = Scenario::read(&options.held.scenario, registry)?;
     let recording = held::read_recording(&options.held.recording, say)?;
     let mut output = Output::new(options.held.out.as_deref(), &options.held.scenario)?;
@@ -47,7 +50,9 @@ pub fn diagnose(registry: &Registry, options: &DiagnoseOptions, seed: u64, say: 
     recording_text(&mut output, &options.held.recording, &found)?;
     let page = page::diagnose::page(&scenario.about, &recording, &found);
     output.page("report.html", &page)?;
-    say.result(&told(&found, &output), &found.diagnosis)
+    let picture = draw_diagnosis(drawn, &scenario.about, &recording, &found, &mut output)?;
+    say.result(&told(&found, &output), &found.diagnosis)?;
+    picture.serve(say)
 }
 
 /// The improved scenario; files that its plugins name are found from where the first one lay.

@@ -171,13 +171,16 @@ impl Driveline for BatteryElectric {
         let mut force = if demand.coasting { 0.0 } else { demand.force_n * way };
         force = force.clamp(-limit / self.gear_efficiency, limit * self.gear_efficiency);
         let electric = |force: f64| self.working(v, force, gear).electric_w + others;
-        let power = electric(force);
+        let mut working = self.working(v, force, gear);
+        let power = working.electric_w + others;
         if force > 0.0 && power > out {
             force -= crossing(0.0, force, |less| out - electric(force - less));
+            working = self.working(v, force, gear);
         } else if force < 0.0 && power < -into {
             force += crossing(0.0, -force, |less| electric(force + less) + into);
+            working = self.working(v, force, gear);
         }
-        let Working { torque, speed, loss_w, electric_w } = self.working(v, force, gear);
+        let Working { torque, speed, loss_w, electric_w } = working;
         let drawn = self.store.draw(electric_w + others, charge, more);
         if let [charge, motor, gear] = rates {
             *charge = drawn.charge_per_s;

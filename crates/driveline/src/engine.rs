@@ -364,8 +364,8 @@ impl Engine {
             return crossing(last, idle, |speed| -net_w - takes(speed));
         }
         let share = self.load_share.min(self.limit(at.boost));
-        let spare = |speed: f64| share * self.curve.torque(speed) * speed - self.accessories_w(speed) - net_w;
-        crossing(idle, self.curve.peak_speed(), spare)
+        let fan = self.fan_power_w / self.curve.peak_speed().powi(3);
+        self.curve.speed_for(share, [self.accessory_power_w + net_w, self.pump_torque_n_m, fan])
     }
 
     /// What it does to give a power beside accessories at a speed.

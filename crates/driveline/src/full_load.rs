@@ -116,6 +116,53 @@ impl FullLoad {
     }
 }
 
+/// Nearer to zero than this, as a part of what is balanced, a power is rounding.
+const ROUNDING: f64 = 1e-14;
+
+impl FullLoad {
+    /// The lowest speed at which a share of full load gives `constant` + `linear` ω + `cubic` ω³ [W]; that of the greatest
+    /// power where it never does below. Newton's method within the piece of the curve that holds it.
+    pub(crate) fn speed_for(&self, share: f64, [constant, linear, cubic]: [f64; 3]) -> f64 {
+        for (index, segment) in self.segments.iter().enumerate() {
+            let end = self.segments.get(index + 1).map_or(self.last_speed, |next| next.low);
+            let (mut low, mut high) = (segment.low, end.min(self.peak_speed));
+            let (first, second) = (share * segment.offset - linear, share * segment.rate);
+            let spare = |w: f64| ((second - cubic * w) * w + first) * w - constant;
+            let (at_low, at_high) = (spare(low), spare(high));
+            if at_low >= 0.0 {
+                return low;
+            }
+            if at_high >= 0.0 {
+                let mut speed = (low * at_high - high * at_low) / (at_high - at_low);
+                while high - low > f64::EPSILON * high {
+                    let value = spare(speed);
+                    if value.abs() <= ROUNDING * (constant.abs() + first.abs() * speed) {
+                        break;
+                    }
+                    if value < 0.0 {
+                        low = speed;
+                    } else {
+                        high = speed;
+                    }
+                    let slope = (2.0 * second - 3.0 * cubic * speed) * speed + first;
+                    let next = speed - value / slope;
+                    let within = next > low && next < high;
+                    let next = if within { next } else { 0.5 * (low + high) };
+                    if next == speed {
+                        break;
+                    }
+                    speed = next;
+                }
+                return speed;
+            }
+            if end >= self.peak_speed {
+                break;
+            }
+        }
+        self.peak_speed
+    }
+}
+
 fn refuse(parameter: &str, found: String, expected: &str) -> Refusal {
     Refusal { parameter: parameter.to_owned(), found, expected: expected.to_owned() }
 }
@@ -186,6 +233,19 @@ mod tests {
     }
 
     proptest! {
+        /// What the search for a zero finds, on a curve whose power rises up to its peak.
+        #[test]
+        fn a_share_of_full_load_meets_what_is_taken(
+            share in 0.3f64..1.0, constant in -1e4f64..2.5e5, linear in 0.0f64..40.0, cubic in prop_oneof![Just(0.0), 0.0f64..2e-3],
+        ) {
+            let curve = curve();
+            let spare = |w: f64| share * curve.torque(w) * w - constant - (linear + cubic * w * w) * w;
+            let speed = curve.speed_for(share, [constant, linear, cubic]);
+            let expected = crate::parts::crossing(85.0, curve.peak_speed(), spare);
+            prop_assert!((speed - expected).abs() <= 1e-6 * expected, "{speed} {expected}");
+            prop_assert!(speed == 85.0 || speed == curve.peak_speed() || spare(speed).abs() <= 1e-9 * constant.abs().max(1e3));
+        }
+
         /// At the lowest speed full load gives the power, and at no speed below does it.
         #[test]
         fn the_lowest_speed_gives_the_power_and_none_below_does(share in 0.0f64..1.0, below in 0.0f64..0.999) {

@@ -31,6 +31,9 @@ pub(crate) const CONSUMERS: [Parameter; 2] = [
         .usually(0.8, 0.99),
 ];
 
+/// The most states of its own that a topology has.
+const MOST_OWN_STATES: usize = 2;
+
 /// What a topology is asked.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Asked<'a> {
@@ -60,7 +63,7 @@ pub(crate) struct Flow {
     pub motor_n_m: f64,
     pub motor_warming_k_s: f64,
     /// Rates of its own states.
-    pub own_rates: [f64; 2],
+    pub own_rates: [f64; MOST_OWN_STATES],
     pub cvt_ratio: f64,
 }
 
@@ -83,6 +86,10 @@ pub(crate) trait Topology: Debug + Send + Sync {
     const CARD: Card;
     /// Whether a generator is apart from the motor, which loses too.
     const HAS_GENERATOR: bool;
+    /// How many states of its own it has.
+    const OWN_STATES: usize;
+    /// Whether it changes any of them between two steps.
+    const CHOOSES: bool = false;
 
     fn settle(&mut self) -> Result<(), Refusal>;
     fn engine(&self) -> &Engine;
@@ -146,6 +153,9 @@ const CARBON: usize = 5;
 const MOTOR_C: usize = 6;
 const OWN: usize = 7;
 
+/// A store that gives or takes less than this part of what the engine gives is left alone.
+const ALONE: f64 = 1e-9;
+
 /// At rest a force that misses is weighed as if the vehicle crept [m/s]: no power tells of it.
 const CREEP_M_S: f64 = 0.5;
 
@@ -159,8 +169,7 @@ struct Solved {
 
 #[allow(private_bounds, reason = "the topologies are those of this crate")]
 impl<T: Topology> Managed<T> {
-    fn asked<'a>(&'a self, demand: &'a Demand, states: &'a [f64]) -> Asked<'a> {
-        let own = self.topology.own_states().len();
+    fn asked<'a>(demand: &'a Demand, states: &'a [f64]) -> Asked<'a> {
         Asked {
             demand,
             speed_m_s: demand.speed_m_s.abs(),
@@ -170,7 +179,7 @@ impl<T: Topology> Managed<T> {
                 hand_rad_s: demand.engine_speed_rad_s,
             },
             motor_c: states[MOTOR_C],
-            own: &states[OWN..OWN + own],
+            own: &states[OWN..OWN + T::OWN_STATES],
         }
     }
 
@@ -193,7 +202,7 @@ impl<T: Topology> Managed<T> {
 
     /// Departs from a share as little as the limits ask.
     fn solve(&self, demand: &Demand, states: &[f64], share: Share) -> Solved {
-        let asked = self.asked(demand, states);
+        let asked = Self::asked(demand, states);
         let (engine, store) = (self.topology.engine(), self.topology.store());
         let (most_out, most_in) = store.most_w(states[CHARGE], demand.battery_resistance_ohm);
         let others = self.topology.consumers().total_w(demand);
@@ -238,7 +247,7 @@ impl<T: Topology> Managed<T> {
     }
 
     fn outlook(&self, demand: &Demand, states: &[f64], power_w: f64) -> Outlook {
-        let asked = self.asked(demand, states);
+        let asked = Self::asked(demand, states);
         let (out, into) = self.topology.store().most_w(states[CHARGE], demand.battery_resistance_ohm);
         Outlook {
             power_w,
@@ -253,7 +262,7 @@ impl<T: Topology> Managed<T> {
     /// The power of the engine that leaves the store alone, by the secant method.
     fn alone_w(&self, demand: &Demand, states: &[f64]) -> f64 {
         const ROUNDS: usize = 4;
-        let asked = self.asked(demand, states);
+        let asked = Self::asked(demand, states);
         let force = self.wanted_n(&asked);
         let others = self.topology.consumers().total_w(demand);
         let bus = |engine_w: f64| self.topology.flow(&asked, force, Some(engine_w)).bus_w + others;
@@ -262,7 +271,7 @@ impl<T: Topology> Managed<T> {
         let mut two = one + at_one;
         for _ in 0..ROUNDS {
             let at_two = bus(two);
-            if at_two == at_one || two == one {
+            if at_two.abs() <= ALONE * one.abs().max(two.abs()) || at_two == at_one || two == one {
                 break;
             }
             let next = two - at_two * (two - one) / (at_two - at_one);
@@ -347,8 +356,8 @@ impl<T: Topology> Driveline for Managed<T> {
             (own[BOOST], own[CHARGE]) = (flow.running.boost_per_s, drawn.charge_per_s);
             (own[VOLUME], own[CARBON]) = engine.burnt(flow.running.fuel_w);
             own[MOTOR_C] = flow.motor_warming_k_s;
-            let ends = OWN + self.topology.own_states().len();
-            rates[OWN..ends].copy_from_slice(&flow.own_rates[..ends - OWN]);
+            let ends = OWN + T::OWN_STATES;
+            rates[OWN..ends].copy_from_slice(&flow.own_rates[..T::OWN_STATES]);
             if let Some(management) = &self.management {
                 let power_w = engine_w + drawn.store_w - drawn.loss_w;
                 management.flow(&self.outlook(demand, states, power_w), &states[ends..], &mut rates[ends..]);
@@ -382,11 +391,15 @@ impl<T: Topology> Driveline for Managed<T> {
     }
 
     fn decide(&self, demand: &Demand, states: &mut [f64]) -> bool {
-        let ends = OWN + self.topology.own_states().len();
-        let flow = self.solve(demand, states, Self::share(states)).flow;
-        let mut own = states[OWN..ends].to_vec();
-        let chosen = self.topology.choose(&self.asked(demand, states), &flow, &mut own);
-        states[OWN..ends].copy_from_slice(&own);
+        let ends = OWN + T::OWN_STATES;
+        let mut chosen = false;
+        if T::CHOOSES {
+            let flow = self.solve(demand, states, Self::share(states)).flow;
+            let mut own = [0.0; MOST_OWN_STATES];
+            own[..T::OWN_STATES].copy_from_slice(&states[OWN..ends]);
+            chosen = self.topology.choose(&Self::asked(demand, states), &flow, &mut own[..T::OWN_STATES]);
+            states[OWN..ends].copy_from_slice(&own[..T::OWN_STATES]);
+        }
         let Some(management) = &self.management else { return chosen };
         let (base, memory) = states.split_at_mut(ends);
         let outlook = self.outlook(demand, base, self.alone_w(demand, base));

@@ -54,6 +54,17 @@ fn asked(speed_m_s: f64, force_n: f64) -> Demand {
     Demand { speed_m_s, force_n, ..Demand::default() }
 }
 
+#[test]
+fn a_topology_has_as_many_states_as_it_says() {
+    fn holds<T: Topology>(hybrid: &Managed<T>) {
+        assert_eq!(hybrid.topology.own_states().len(), T::OWN_STATES);
+        assert!(T::OWN_STATES <= MOST_OWN_STATES);
+    }
+    holds(&parallel());
+    holds(&series());
+    holds(&power_split());
+}
+
 /// Boosted, with an engine that is set to a power, and half charged or so.
 fn states(hybrid: &dyn Driveline, engine_w: Option<f64>) -> Vec<f64> {
     let mut states: Vec<f64> = hybrid.states().iter().map(|state| state.initial).collect();

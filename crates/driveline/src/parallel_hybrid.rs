@@ -67,6 +67,8 @@ impl Topology for Parallel {
         parameters: &PARAMETERS,
     };
     const HAS_GENERATOR: bool = false;
+    const OWN_STATES: usize = 2;
+    const CHOOSES: bool = true;
 
     fn settle(&mut self) -> Result<(), Refusal> {
         self.engine.settle()?;

@@ -96,10 +96,29 @@ pub(crate) fn increasing(parameter: &str, values: &[f64], least: usize) -> Resul
     }
 }
 
+/// A grid of no more points is looked through from end to end.
+const SHORT: usize = 24;
+
 /// The piece of an increasing grid that holds a value, and how far along it; ends are kept outside.
 pub(crate) fn place(grid: &[f64], value: f64) -> (usize, f64) {
     let last = grid.len() - 2;
-    let index = grid.partition_point(|point| *point <= value).saturating_sub(1).min(last);
+    // Most grids are even or nearly so: where they would have it is looked at first.
+    let (first, end) = (grid[0], grid[last + 1]);
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a guess; below the grid and no number at all become 0"
+    )]
+    let guess = (((value - first) / (end - first) * (last + 1) as f64) as usize).min(last);
+    let holds = grid[guess] <= value && value < grid[guess + 1];
+    let index = if holds {
+        guess
+    } else if grid.len() <= SHORT {
+        // Counting has no branch to be foreseen.
+        grid.iter().map(|point| usize::from(*point <= value)).sum::<usize>().saturating_sub(1).min(last)
+    } else {
+        grid.partition_point(|point| *point <= value).saturating_sub(1).min(last)
+    };
     let share = (value - grid[index]) / (grid[index + 1] - grid[index]);
     (index, share.clamp(0.0, 1.0))
 }
@@ -123,6 +142,7 @@ mod tests {
         assert_eq!(place(&grid, 2.0), (1, 0.5));
         assert_eq!(place(&grid, -1.0), (0, 0.0));
         assert_eq!(place(&grid, 3.0), (1, 1.0));
+        assert_eq!((place(&grid, 7.0), place(&[0.0, 0.1, 0.2, 10.0], 0.15).0), ((1, 1.0), 1));
     }
 
     #[test]

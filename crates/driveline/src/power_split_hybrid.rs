@@ -96,6 +96,7 @@ impl Topology for PowerSplit {
         parameters: &PARAMETERS,
     };
     const HAS_GENERATOR: bool = true;
+    const OWN_STATES: usize = 1;
 
     fn settle(&mut self) -> Result<(), Refusal> {
         self.engine.settle()?;

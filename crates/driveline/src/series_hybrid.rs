@@ -77,6 +77,7 @@ impl Topology for Series {
         parameters: &PARAMETERS,
     };
     const HAS_GENERATOR: bool = true;
+    const OWN_STATES: usize = 1;
 
     fn settle(&mut self) -> Result<(), Refusal> {
         self.engine.settle()?;

@@ -1,15 +1,21 @@
 //! An engine behind gears that are shifted under load.
 //!
 //! T_c = F r / (i η) + T_0    driving,   F r η / i + T_0   overrun; T_c at the clutch
-//! ω_c = i v / r,   ω_e = max(ω_c, ω_launch) (1 + (s − 1) (1 − t / t_s)) while t < t_s after a shift up by the step s
-//! P_e = T_c ω_e,   T_c (ω_e − ω_c) in the slipping clutch
+//! ω_c = i v / r,   ω_e = max(ω_c, ω_launch) (1 + (s − 1) (1 − t / t_s)) while t < t_s after a shift
+//! P_e = (T_c + J dω_e/dt) ω_e,   T_c (ω_e − ω_c) in the slipping clutch
+//! dω_e/dt = max(ω_c, ω_launch) (1 − s) / t_s: what the shift changes; s = ω_e before it / max(ω_c, ω_launch) after it
 //!
 //! Source: Renius, *Fundamentals of Tractor Design* (2020), chapter 5; Guzzella and Onder (2010) for the engine.
 //!
 //! A gear is decided between two steps: the highest in which the engine turns at least at the least speed and gives what
 //! is asked with the share λ of its torque; a shift down comes at once where it is needed, one up only after the least time
-//! in gear. A shift up passes from clutch to clutch without interruption and its slip is a loss; that of a shift down is left
-//! out. So are inertia of the engine and dead time.
+//! in gear. A shift passes from clutch to clutch without interruption, and its slip is a loss:
+//! - up: the clutch of the new gear pulls, and takes the slower engine's kinetic energy. An engine that its own friction does not
+//!   slow down in time pushes the vehicle through it.
+//! - down: the clutch of the old gear still pulls (i is the old one) while the engine speeds itself up.
+//!
+//! While a clutch slips the engine does not brake the vehicle. In gear its inertia is a part of `rotating_mass_kg`. Dead time is
+//! left out.
 
 use crate::engine::{Circumstance, ENGINE, Engine, PATIENCE_S};
 use crate::parts::{hold, increasing, join, refuse};
@@ -19,7 +25,7 @@ use headland_plugin::{
 use serde::Deserialize;
 use std::path::Path;
 
-const OWN: [Parameter; 9] = [
+const OWN: [Parameter; 10] = [
     parameter(
         "ratios",
         "[1]",
@@ -37,9 +43,16 @@ const OWN: [Parameter; 9] = [
     parameter("launch_speed_rad_s", "rad/s", "of the engine while the clutch slips at a start, ω_launch")
         .must_be(Bound::Positive)
         .usually(80.0, 200.0),
-    parameter("shift_time_s", "s", "that a clutch slips in a shift up, t_s")
+    parameter("shift_time_s", "s", "that a clutch slips in a shift, t_s")
         .must_be(Bound::Positive)
         .usually(0.1, 2.0),
+    parameter(
+        "engine_inertia_kg_m2",
+        "kg m²",
+        "of the engine with its flywheel, which a shift speeds up or slows down, J",
+    )
+    .must_be(Bound::NotNegative)
+    .usually(0.2, 8.0),
     parameter("least_time_s", "s", "in a gear before the next shift up")
         .must_be(Bound::NotNegative)
         .usually(0.0, 10.0),
@@ -62,6 +75,7 @@ pub struct Powershift {
     least_speed_rad_s: f64,
     launch_speed_rad_s: f64,
     shift_time_s: f64,
+    engine_inertia_kg_m2: f64,
     least_time_s: f64,
     wheel_radius_m: f64,
     rotating_mass_kg: f64,
@@ -71,11 +85,11 @@ impl Plugin for Powershift {
     const CARD: Card = Card {
         name: "Powershift",
         about: "an engine behind gears that are shifted under load, with a clutch that slips at the start and in shifts",
-        equation: "T_c = F r η^(∓1) / i + T_0; ω_c = i v / r; P_e = T_c ω_e; \
-                   ω_e = max(ω_c, ω_launch) (1 + (s − 1) (1 − t / t_s)) after a shift up by the step s",
+        equation: "T_c = F r η^(∓1) / i + T_0; ω_c = i v / r; P_e = (T_c + J dω_e/dt) ω_e; \
+                   ω_e = max(ω_c, ω_launch) (1 + (s − 1) (1 − t / t_s)) after a shift by the step s",
         source: "Renius, Fundamentals of Tractor Design (2020), chapter 5; Guzzella and Onder, Introduction to Modeling and \
                  Control of Internal Combustion Engine Systems (2010)",
-        validity: "quasi-steady; leaves out inertia of the engine, dead time, and the slip of a shift down",
+        validity: "quasi-steady; the engine's inertia counts in shifts; leaves out dead time",
         parameters: &PARAMETERS,
     };
 
@@ -104,10 +118,14 @@ const GEAR: usize = 1;
 const SINCE: usize = 2;
 const STEP: usize = 3;
 
-/// Speeds of clutch and engine.
+/// How clutch and engine turn.
 struct Turning {
+    /// Ratio of the gear that pulls.
+    ratio: f64,
     clutch: f64,
     engine: f64,
+    /// What a shift does to the speed of the engine [rad/s²].
+    spin_up: f64,
 }
 
 impl Powershift {
@@ -122,10 +140,17 @@ impl Powershift {
     }
 
     fn turning(&self, speed: f64, states: &[f64]) -> Turning {
-        let clutch = self.ratio(states[GEAR]) * speed / self.wheel_radius_m;
+        let (gear, step) = (self.ratio(states[GEAR]), states[STEP]);
+        let synchronous = gear * speed / self.wheel_radius_m;
         let left = (1.0 - states[SINCE] / self.shift_time_s).clamp(0.0, 1.0);
-        let engine = clutch.max(self.launch_speed_rad_s) * (1.0 + (states[STEP] - 1.0) * left);
-        Turning { clutch, engine: engine.min(self.engine.last_rad_s().max(clutch)) }
+        let base = synchronous.max(self.launch_speed_rad_s);
+        // In a shift down the clutch of the gear before pulls until the engine has come up to the new one.
+        let ratio = if left > 0.0 && step < 1.0 { gear * step } else { gear };
+        let clutch = ratio * speed / self.wheel_radius_m;
+        let (engine, most) = (base * (1.0 + (step - 1.0) * left), self.engine.last_rad_s().max(synchronous));
+        let shifts = left > 0.0 && engine <= most;
+        let spin_up = if shifts { base * (1.0 - step) / self.shift_time_s } else { 0.0 };
+        Turning { ratio, clutch, engine: engine.min(most), spin_up }
     }
 
     /// Torque at the clutch for a force in the direction of driving.
@@ -203,7 +228,7 @@ impl Driveline for Powershift {
     }
 
     fn losses(&self) -> &'static [&'static str] {
-        &["engine heat", "transmission", "clutch", "accessories"]
+        &["engine heat", "transmission", "clutch", "accessories", "engine's inertia"]
     }
 
     fn source(&self) -> &'static str {
@@ -219,21 +244,23 @@ impl Driveline for Powershift {
         let alternator = self.engine.alternator_w(demand.auxiliary_power_w);
         let others = alternator + demand.shaft_power_w;
         let way = if demand.speed_m_s == 0.0 { demand.force_n.signum() } else { demand.speed_m_s.signum() };
-        let ratio = self.ratio(states[GEAR]);
-        let Turning { clutch, engine } = self.turning(demand.speed_m_s.abs(), states);
-        let (force, torque, running) = if demand.coasting {
-            (0.0, 0.0, self.engine.run(others, &at))
+        let Turning { ratio, clutch, engine, spin_up } = self.turning(demand.speed_m_s.abs(), states);
+        let (force, torque, stored_w, running) = if demand.coasting {
+            (0.0, 0.0, 0.0, self.engine.run(others, &at))
         } else {
-            let most = self.most_n_m(engine, &at, others);
-            // A clutch that slips cannot brake: the engine turns faster than it.
-            let held = engine <= clutch * (1.0 + 1e-9);
+            let inertia = self.engine_inertia_kg_m2 * spin_up;
+            let most = self.most_n_m(engine, &at, others) - inertia;
             let braking =
                 self.engine.friction_w(engine, at.friction_n_m) + self.engine.accessories_w(engine) + others;
-            let least = if held { -braking / engine } else { self.idle_torque_n_m };
-            let least_n = self.wheels_n(least, ratio).min(0.0);
-            let force = (demand.force_n * way).clamp(least_n, self.wheels_n(most, ratio).max(0.0));
+            let least_n = self.wheels_n(-braking / engine - inertia, ratio);
+            // A clutch that slips cannot brake: the engine turns faster than it. It pushes where it has to slow down.
+            let held = spin_up == 0.0 && engine <= clutch * (1.0 + 1e-9);
+            let least_n = if held { least_n.min(0.0) } else { least_n.max(0.0) };
+            let most_n = self.wheels_n(most, ratio).max(least_n).max(0.0);
+            let force = (demand.force_n * way).clamp(least_n, most_n);
             let torque = self.clutch_n_m(force, ratio);
-            (force, torque, self.engine.run_at(engine, torque * engine + others, &at))
+            let stored_w = inertia * engine;
+            (force, torque, stored_w, self.engine.run_at(engine, torque * engine + stored_w + others, &at))
         };
         if let [boost, gear, since, step, volume, carbon] = rates {
             (*gear, *since, *step) = (0.0, 1.0, 0.0);
@@ -246,6 +273,7 @@ impl Driveline for Powershift {
         delivery.losses_w[1] = torque * clutch - force_n * demand.speed_m_s;
         delivery.losses_w[2] = torque * (engine - clutch);
         delivery.losses_w[3] = running.accessories_w + alternator - demand.auxiliary_power_w;
+        delivery.losses_w[4] = stored_w;
         delivery.readings = Readings {
             engine_speed_rad_s: running.speed_rad_s,
             engine_torque_n_m: running.torque_n_m(),
@@ -264,7 +292,10 @@ impl Driveline for Powershift {
         if gear == states[GEAR] {
             return false;
         }
-        states[STEP] = (self.ratio(states[GEAR]) / self.ratio(gear)).max(1.0);
+        let speed = demand.speed_m_s.abs();
+        let before = self.turning(speed, states).engine;
+        let synchronous = self.ratio(gear) * speed / self.wheel_radius_m;
+        states[STEP] = before / synchronous.max(self.launch_speed_rad_s);
         states[GEAR] = gear;
         states[SINCE] = 0.0;
         true

@@ -211,6 +211,112 @@ fn every_scenario_of_the_documentation_conforms_to_the_schema() {
     }
 }
 
+fn of_kind(kind: headland::SchemaKind) -> Value {
+    headland::schema_of(&headland_stock::registry(), kind)
+}
+
+/// Files of a folder and blocks of the documentation with a mark, as JSON with their names.
+fn files_and_blocks(folder: &str, mark: &str) -> Vec<(String, Value)> {
+    let mut files = files_below(&root().join(folder));
+    files.retain(|path| path.parent() == Some(&root().join(folder)));
+    let mut all: Vec<(String, Value)> =
+        files.iter().map(|path| (path.display().to_string(), read(path))).collect();
+    for block in crate::blocks().iter().filter(|block| block.mark == mark) {
+        let name = format!("{}:{}", block.page, block.line);
+        let document = Document::of_text(&name, &block.text, &root().join("scenarios")).unwrap();
+        all.push((name, as_json(document.tree(), document.text())));
+    }
+    all
+}
+
+#[test]
+fn every_comparison_conforms_to_its_schema() {
+    let schema = of_kind(headland::SchemaKind::Comparison);
+    let all = files_and_blocks("scenarios/comparisons", "ron comparison");
+    assert!(all.len() > 4, "{}", all.len());
+    for (name, comparison) in &all {
+        if let Err(why) = validate(&schema, &schema, comparison, "") {
+            panic!("{name}: {why}");
+        }
+    }
+    let refused = |pointer: &str, value: Value| {
+        let mut wrong = all.iter().find(|(name, _)| name.contains("batch.md")).unwrap().1.clone();
+        *wrong.pointer_mut(pointer).unwrap_or_else(|| panic!("{pointer}")) = value;
+        validate(&schema, &schema, &wrong, "").unwrap_err()
+    };
+    assert!(refused("/variants/0/vehicle/mass_kg", json!("heavy")).contains("variants.0.vehicle.mass_kg"));
+    assert!(refused("/repeat/scatter", json!({"vehicle.mass_kg": {"Wide": 3}})).contains(".repeat.scatter"));
+    assert!(refused("/sweep", json!({"vehicle.mass_kg": {"Range": [1, 2]}})).contains("minItems"));
+    assert!(refused("/report/by", json!(["Fuell"])).contains(".report.by"));
+    assert!(refused("/fuel/density_kg_m3", json!(-1)).contains("exclusiveMinimum"));
+    assert!(refused("", json!({"abuot": "nothing"})).contains("about"));
+}
+
+#[test]
+fn every_recording_conforms_to_its_schema() {
+    let schema = of_kind(headland::SchemaKind::Recording);
+    let all = files_and_blocks("scenarios/recordings", "ron recording");
+    assert!(all.len() > 8, "{}", all.len());
+    for (name, recording) in &all {
+        if let Err(why) = validate(&schema, &schema, recording, "") {
+            panic!("{name}: {why}");
+        }
+    }
+    let refused = |text: &str| {
+        let document = Document::of_text("test.ron", text, root()).unwrap();
+        validate(&schema, &schema, &as_json(document.tree(), document.text()), "").unwrap_err()
+    };
+    let good = "(about: \"a log\", runs: [(id: \"one\", file: \"one.csv\", use: held_out)], format: csv(delimiter: \";\"))";
+    let document = Document::of_text("test.ron", good, root()).unwrap();
+    assert_eq!(validate(&schema, &schema, &as_json(document.tree(), document.text()), ""), Ok(()));
+    assert!(refused(&good.replace("held_out", "held")).contains(".runs.0.use"));
+    assert!(refused(&good.replace("id: \"one\", ", "")).contains("required"));
+    assert!(refused(&good.replace("delimiter", "delimeter")).contains("delimeter"));
+}
+
+/// Panics where nothing is told of a field.
+fn hold(value: &Value, path: &str, told_above: bool) {
+    for (name, own) in value.get("properties").and_then(Value::as_object).into_iter().flatten() {
+        let path = format!("{path}.{name}");
+        let told = own.get("description").and_then(Value::as_str).unwrap_or_default();
+        assert!(told_above || !told.is_empty(), "{path}");
+        hold(own, &path, false);
+    }
+    // What is told of a variant stands beside its name, not behind it.
+    for inner in value.get("anyOf").and_then(Value::as_array).into_iter().flatten() {
+        let told = inner.get("description").and_then(Value::as_str).unwrap_or_default();
+        assert!(!told.is_empty(), "{path}: {inner}");
+        hold(inner, path, true);
+    }
+    if let Some(items) = value.get("items") {
+        hold(items, path, false);
+    }
+}
+
+/// Whatever a description may say is told, and nothing else is.
+#[test]
+fn every_field_of_a_recording_is_told_in_its_schema() {
+    let schema = of_kind(headland::SchemaKind::Recording);
+    let whole = &schema["$defs"]["recording"];
+    hold(whole, "", false);
+    for (path, about) in headland_recording::ABOUT.iter().chain(headland_recording::ABOUT_PARTS) {
+        let found = path.split('.').try_fold(whole, step).or_else(|| {
+            // A variant without anything behind it is a constant.
+            let (field, variant) = path.rsplit_once('.')?;
+            let choices = field.split('.').try_fold(whole, step)?.get("anyOf")?.as_array()?;
+            choices
+                .iter()
+                .find(|one| one["const"] == json!(variant) || one["properties"].get(variant).is_some())
+        });
+        let found = found.unwrap_or_else(|| panic!("no `{path}`"));
+        let told = found["description"].as_str().unwrap_or_default();
+        assert!(
+            told.starts_with(about) || found.get("anyOf").is_some() || path.contains("format."),
+            "{path}: {told}"
+        );
+    }
+}
+
 #[test]
 fn what_the_program_refuses_the_schema_refuses_with_its_place() {
     let schema = schema();

@@ -61,7 +61,7 @@ pub enum Command {
     Validate(ValidateOptions),
     /// List the models that scenarios can name, with their parameters, equations and sources
     Plugins(PluginsOptions),
-    /// Print what scenario files look like, for editors: a JSON schema, or snippets
+    /// Print what files look like, for editors: a JSON schema, or snippets
     Schema(SchemaOptions),
 }
 
@@ -262,9 +262,23 @@ pub struct CheckOptions {
 /// Options of `headland schema`.
 #[derive(Args, Debug)]
 pub struct SchemaOptions {
+    /// Files of which kind
+    #[arg(value_enum, value_name = "KIND", default_value_t = SchemaKind::Scenario)]
+    pub kind: SchemaKind,
     /// Snippets in the format of Visual Studio Code instead
     #[arg(long)]
     pub snippets: bool,
+}
+
+/// A kind of files that a schema tells of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum SchemaKind {
+    /// What is driven, over what and how
+    Scenario,
+    /// Variants through cycles on grounds, for `headland batch`
+    Comparison,
+    /// The description of a log, `recording.ron`
+    Recording,
 }
 
 /// Options of `headland plugins`.

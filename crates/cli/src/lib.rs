@@ -30,7 +30,8 @@ mod staged;
 mod study_input;
 mod validation;
 
-pub use schema::{schema, snippets};
+pub use arguments::SchemaKind;
+pub use schema::{schema, schema_of, snippets};
 
 use arguments::{Arguments, Command};
 use clap::Parser;

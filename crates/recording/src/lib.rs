@@ -18,6 +18,7 @@ mod cut;
 mod describe;
 mod error;
 mod folder;
+mod form;
 mod layout;
 mod load;
 mod look;
@@ -34,6 +35,7 @@ mod validate;
 mod words;
 
 pub use error::{Place, RecordingError};
+pub use form::{ABOUT, ABOUT_PARTS, DescriptionForm};
 pub use load::{check, load};
 pub use notice::{Notice, NoticeKind};
 pub use recording::{Check, CheckedRun, Known, RecordedRun, Recording, Sensor};

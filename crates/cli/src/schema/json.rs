@@ -1,7 +1,8 @@
 //! The JSON schema. RON stands in it as JSON so: `(field: value)` is an object, `Name(field: value)` an object of one property
 //! `Name`, `Name` alone a string, a list an array.
 
-use super::{Part, Told, below, may_be_bare, models, parts, required};
+use super::{Part, Told, below, may_be_bare, models, parts_of_file, required};
+use crate::arguments::SchemaKind;
 use headland_plugin::{Bound, Form, Kind, Registry};
 use serde_json::{Map, Value, json};
 
@@ -10,12 +11,20 @@ const QUANTITY: &str = "^\\s*[-+.0-9]";
 
 /// What scenario files look like to this registry, as a JSON schema (draft 2020-12).
 pub fn schema(registry: &Registry) -> Value {
+    schema_of(registry, SchemaKind::Scenario)
+}
+
+/// The same of a kind of files.
+pub fn schema_of(registry: &Registry, file: SchemaKind) -> Value {
     let mut definitions = Map::new();
-    for part in parts() {
-        let own = with_about(form(&part, &part.form, ""), &part.about);
+    let parts = parts_of_file(file);
+    let whole = parts.first().map_or("", |part| part.name);
+    for part in &parts {
+        let own = with_about(form(part, &part.form, ""), &part.about);
         definitions.insert(part.name.to_owned(), own);
     }
-    for kind in Kind::ALL {
+    let kinds = if file == SchemaKind::Recording { &[][..] } else { &Kind::ALL[..] };
+    for &kind in kinds {
         let mut choices = Vec::new();
         for (card, part) in models(registry, kind) {
             let about = format!("{}: {}. Source: {}", card.about, card.equation, card.source);
@@ -28,10 +37,10 @@ pub fn schema(registry: &Registry) -> Value {
     }
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "Headland scenario",
-        "description": "A scenario file with its includes in place. (field: value) is an object, Name(field: value) an object of one \
+        "title": format!("Headland {whole}"),
+        "description": "A file with its includes in place. (field: value) is an object, Name(field: value) an object of one \
                         property, Name alone a string.",
-        "$ref": "#/$defs/scenario",
+        "$ref": format!("#/$defs/{whole}"),
         "$defs": definitions,
     })
 }

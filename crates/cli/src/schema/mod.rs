@@ -5,11 +5,13 @@
 mod json;
 mod snippets;
 
-pub use json::schema;
+pub use json::{schema, schema_of};
 pub use snippets::snippets;
 
-use headland_plugin::{Bound, Card, Field, Form, Kind, Registry};
-use headland_scenario::{Note, definitions};
+use crate::arguments::SchemaKind;
+use headland_plugin::{Bound, Card, Field, Form, Kind, Registry, form_of};
+use headland_recording::{ABOUT, ABOUT_PARTS, DescriptionForm};
+use headland_scenario::{Definition, Note, definitions};
 
 /// A part of a scenario with what is told of its fields.
 pub(crate) struct Part {
@@ -39,12 +41,48 @@ impl Part {
             let steps = path.split('.').filter(|step| !step.starts_with(|c: char| c.is_ascii_uppercase()));
             steps.collect::<Vec<_>>().join(".")
         };
-        find(path).or_else(|| find(&without_variants()))
+        // What stands in several places is told once, without the list that it stands in.
+        let without_the_list = || path.split_once('.').and_then(|(_, rest)| find(rest));
+        find(path)
+            .or_else(|| find(&without_variants()))
+            .or_else(|| if self.name == "recording" { without_the_list() } else { None })
     }
 }
 
 /// The parts of a scenario itself, the scenario first.
 pub(crate) fn parts() -> Vec<Part> {
+    parts_of(definitions())
+}
+
+/// The parts of a file, the file itself first.
+pub(crate) fn parts_of_file(kind: SchemaKind) -> Vec<Part> {
+    match kind {
+        SchemaKind::Scenario => parts(),
+        SchemaKind::Comparison => {
+            let mut parts = parts_of(headland_batch::definitions());
+            parts.extend(self::parts().into_iter().filter(|part| part.name != "scenario"));
+            parts
+        }
+        SchemaKind::Recording => vec![recording()],
+    }
+}
+
+/// A description of a recording.
+fn recording() -> Part {
+    let told = |path: &'static str, about: &'static str| Told {
+        path,
+        about,
+        unit: "",
+        bound: Bound::Finite,
+        usual: None,
+        default: None,
+    };
+    let told = ABOUT.iter().chain(ABOUT_PARTS).map(|(path, about)| told(path, about)).collect();
+    let name = "recording";
+    Part { name, about: about(name).to_owned(), form: form_of::<DescriptionForm>(), told }
+}
+
+fn parts_of(definitions: Vec<Definition>) -> Vec<Part> {
     let told = |note: &Note| Told {
         path: note.path,
         about: note.about,
@@ -53,7 +91,7 @@ pub(crate) fn parts() -> Vec<Part> {
         usual: None,
         default: None,
     };
-    definitions()
+    definitions
         .into_iter()
         .map(|definition| Part {
             name: definition.name,
@@ -66,6 +104,11 @@ pub(crate) fn parts() -> Vec<Part> {
 
 fn about(name: &str) -> &'static str {
     match name {
+        "comparison" => "variants through cycles on grounds, as often as asked",
+        "variant" => "fields of a scenario with a name, or just a vehicle",
+        "compared_cycle" => "fields of a scenario with a name, or just phases",
+        "compared_ground" => "fields of a scenario with a name, or just a ground",
+        "recording" => "which files there are, and which column is which quantity",
         "scenario" => "what is driven, over what, how, and how finely it is computed",
         "cycle" => "phases, or a cycle that brings its tasks",
         "phases" => "a phase, or a list that may hold lists",

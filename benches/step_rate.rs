@@ -1,12 +1,11 @@
 //! Steps per second of one scenario, the simulation alone. `cargo bench --bench step_rate -- SCENARIO.ron`.
 //!
-//! The model is put together once; every run keeps every channel of every step. The fastest of all runs counts, so that a
+//! The model is put together once; every run keeps what its scenario says. The fastest of all runs counts, so that a
 //! busy machine disturbs little. `benches/peers/udds_fastsim.py` reads what it prints.
 #![allow(clippy::print_stdout, reason = "a bench prints what it measures")]
 #![allow(clippy::unwrap_used, reason = "a bench stops where something is missing")]
 
 use headland_scenario::Scenario;
-use headland_sim::simulate;
 use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
@@ -22,11 +21,11 @@ fn main() {
     let path = named.map_or_else(|| scenarios.join("over_the_ridge.ron"), Into::into);
     let registry = headland_stock::registry();
     let scenario = Scenario::read(&path, &registry).unwrap();
-    let (model, cycle) = (scenario.model(&registry).unwrap(), scenario.cycle.unwrap());
+    let (model, cycle) = (scenario.model(&registry).unwrap(), scenario.cycle.as_ref().unwrap());
     let (mut best_s, mut steps) = (f64::INFINITY, 0);
     for _ in 0..ROUNDS {
         let begin = Instant::now();
-        let outcome = black_box(simulate(&model, &cycle)).unwrap();
+        let outcome = black_box(scenario.fidelity.simulate(&model, cycle)).unwrap();
         best_s = best_s.min(begin.elapsed().as_secs_f64());
         steps = outcome.steps;
     }

@@ -13,6 +13,7 @@ Needs fastsim and pyarrow.
 """
 
 import argparse
+import json
 import pathlib
 import re
 import subprocess
@@ -30,6 +31,8 @@ CYCLE = "udds.csv"
 GRAVITY = 9.80665
 # The cycle has a corner each second: powers jump there, so Headland samples them finely. FASTSim has the step of its cycle.
 STEP_S, FINE_STEP_S = 1.0, 0.01
+# A row each second, and those of the begin and the end alone.
+EACH_STEP, NO_ROWS = "QuasiStatic(record_s: 1)", "QuasiStatic(record_s: 86400)"
 # FASTSim's electric car knows no speeds and no voltage. Its results depend on powers alone, so these are ours.
 GEAR_RATIO, MOTOR_N_M, MOTOR_RAD_S, VOLTS = 9.0, 250.0, 1000.0, 400.0
 
@@ -96,7 +99,7 @@ def series(values):
     return ", ".join(repr(float(value)) for value in values)
 
 
-def scenario(car, driveline, step_s, management=""):
+def scenario(car, driveline, step_s, management="", fidelity="Longitudinal"):
     chassis = car["chassis"]
     rotating = chassis["num_wheels"] * chassis["wheel_inertia_kilogram_square_meters"] / chassis["wheel_radius_meters"] ** 2
     area = chassis["drag_coef"] * chassis["frontal_area_square_meters"]
@@ -113,7 +116,7 @@ def scenario(car, driveline, step_s, management=""):
     gravity_m_s2: {GRAVITY},
     air: (density_kg_m3: {car['density']!r}),
     cycle: [Follow(times_s: [{series(car['times'])}], speeds_m_s: [{series(car['speeds'])}])],
-    simulation: (fidelity: Longitudinal, step_s: {step_s}),
+    simulation: (fidelity: {fidelity}, step_s: {step_s}),
 )
 """
 
@@ -229,6 +232,16 @@ def ours(program, text):
     return trace
 
 
+def store_joules(program, text):
+    """What the store gave, by the ledger of Headland."""
+    with tempfile.TemporaryDirectory() as folder:
+        path, out = pathlib.Path(folder) / "scenario.ron", pathlib.Path(folder) / "out"
+        path.write_text(text)
+        subprocess.run([program, "run", path, "--out", out, "--quiet"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        (run,) = json.loads((out / "summary.json").read_text())["runs"]
+    return run["energy"]["source_j"]
+
+
 def step_rate(bench, text):
     """Steps per second of Headland, the simulation alone."""
     with tempfile.TemporaryDirectory() as folder:
@@ -287,20 +300,27 @@ def head(car):
 
 
 def rates(bench, rounds, cars):
-    lines = ["## Steps per second", "", "| | FASTSim | Headland | |", "|---|---:|---:|---:|"]
+    lines = [
+        "## Steps per second",
+        "",
+        "| | FASTSim | `QuasiStatic`, no rows | | `QuasiStatic`, a row each step | | `Longitudinal`, a row each step | |",
+        "|---|---:|---:|---:|---:|---:|---:|---:|",
+    ]
+    thousands = lambda rate: f"{rate:,.0f} 1/s".replace(",", " ")
     for name, car, text in cars:
+        mine = [step_rate(bench, text(fidelity)) for fidelity in (NO_ROWS, EACH_STEP, "Longitudinal")]
         for balanced in [True] + [False] * (name == HYBRID):
             theirs = (len(car["times"]) - 1) / walk_s(name, rounds, balanced)
-            mine = step_rate(bench, text)
             what = f"{car['name']}" + ("" if name != HYBRID else ", with its search for a balanced charge" if balanced else ", one pass")
-            thousands = lambda rate: f"{rate:,.0f} 1/s".replace(",", " ")
-            lines.append(f"| {what} | {thousands(theirs)} | {thousands(mine)} | {mine / theirs:.1f} times |")
+            lines.append(
+                f"| {what} | {thousands(theirs)} | " + " | ".join(f"{thousands(rate)} | {rate / theirs:.1f} times" for rate in mine) + " |"
+            )
     return [
         *lines,
         "",
-        "One thread, both with steps of 1 s, the simulation alone, the best of many in one session; FASTSim keeps no history, Headland every "
-        "channel of every step, and asks its driveline four times a step and more where FASTSim asks once. FASTSim repeats a hybrid's cycle until "
-        "charge is balanced; *one pass* leaves that out.",
+        "One thread, all with steps of 1 s, the simulation alone, the best of many in one session. FASTSim keeps no history here. It asks a car once a "
+        "step, as `QuasiStatic` does; `Longitudinal` asks four times a step and more. FASTSim repeats a hybrid's cycle until charge is balanced; *one "
+        "pass* leaves that out.",
     ]
 
 
@@ -319,6 +339,10 @@ def main():
     net = [sum(trapezoids(trace["time_s"], trace["battery_current_a"] * trace["battery_voltage_v"])) for trace in (drawn, alike)]
     heating_value = fusion["train"]["fs"]["specific_energy_joules_per_kilogram"]
     theirs = works(fusion["times"], power(fusion["train"]["fc"], "pwr_fuel_watts"))[0]
+    once_burnt, once_drawn = (
+        store_joules(wanted.headland, scenario(car, text, STEP_S, fidelity=EACH_STEP)) for car, text in ((fusion, burns), (zoe, draws))
+    )
+    cells = sum(works(zoe["times"], power(zoe["train"]["res"], "pwr_out_chemical_watts")))
     mine = trapezoids(burnt["time_s"], burnt["fuel_rate_kg_s"] * heating_value)[0]
     miss = max(
         float(np.max(np.abs(np.interp(car["times"], trace["time_s"], trace["speed_m_s"]) - car["speeds"])))
@@ -334,6 +358,7 @@ def main():
         *head(fusion),
         *at_the_wheels(fusion, burnt),
         row("fuel, by its heating value", theirs, mine),
+        row(f"the same, `QuasiStatic` in steps of {STEP_S:g} s", theirs, once_burnt),
         "",
         "The engine's efficiency over power, the efficiency of the transmission and the accessories are FASTSim's own, in an `EngineByPower`. What "
         f"differs: FASTSim takes one power for each step of {STEP_S:g} s, from the mean of its speeds; Headland integrates what flows within "
@@ -343,6 +368,7 @@ def main():
         *head(zoe),
         *at_the_wheels(zoe, drawn),
         *of_the_battery(zoe, drawn),
+        row(f"net of its cells, `QuasiStatic` in steps of {STEP_S:g} s", cells, once_drawn),
         "",
         "The motor's efficiency over power stands as a `loss_map` of a `BatteryElectric`; gears and consumers are FASTSim's. In every step that "
         f"brakes FASTSim's motor has one efficiency, {braking:g}, that of no power (checked in its record); the map has it so. With the same "
@@ -354,9 +380,9 @@ def main():
     ]
     if wanted.step_rate:
         cars = [
-            (CONVENTIONAL, fusion, scenario(fusion, burns, STEP_S)),
-            (ELECTRIC, zoe, scenario(zoe, draws, STEP_S)),
-            (HYBRID, prius, scenario(prius, shares, STEP_S, management)),
+            (CONVENTIONAL, fusion, lambda fidelity: scenario(fusion, burns, STEP_S, fidelity=fidelity)),
+            (ELECTRIC, zoe, lambda fidelity: scenario(zoe, draws, STEP_S, fidelity=fidelity)),
+            (HYBRID, prius, lambda fidelity: scenario(prius, shares, STEP_S, management, fidelity)),
         ]
         lines += [
             *rates(wanted.step_rate, wanted.rounds, cars),

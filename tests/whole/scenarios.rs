@@ -33,7 +33,8 @@ fn every_scenario_reads_without_a_remark_and_runs_to_its_end() {
             let Some(cycle) = &scenario.cycle else { continue };
             let outcome = scenario.fidelity.simulate(&scenario.model(&registry).unwrap(), cycle).unwrap();
             assert_eq!(outcome.end, End::Finished, "{name}");
-            let open = if scenario.fidelity == Fidelity::Longitudinal { 1e-6 } else { 1e-3 };
+            let rigid = matches!(scenario.fidelity, Fidelity::RigidBody { .. });
+            let open = if rigid { 1e-3 } else { 1e-6 };
             assert!(outcome.ledger.relative_residual() < open, "{name}: {:?}", outcome.ledger);
         }
     }

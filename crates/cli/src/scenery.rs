@@ -49,7 +49,7 @@ pub fn stages(scenario: &Scenario, registry: &Registry, runs: &[Run]) -> Result<
         let scenario = scenario.run(spec, registry)?;
         let model = scenario.model(registry)?;
         let (rig, trailer) = match &scenario.fidelity {
-            Fidelity::Longitudinal => (None, None),
+            Fidelity::Longitudinal | Fidelity::QuasiStatic { .. } => (None, None),
             Fidelity::RigidBody { chassis, .. } => {
                 let failed = |error: BodyError| Failure::Machine(error.to_string());
                 let wheels = hubs(&model, chassis).map_err(failed)?.into_iter().map(wheel).collect();

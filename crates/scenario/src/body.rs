@@ -84,6 +84,11 @@ pub enum Fidelity {
     /// One degree of freedom along the path.
     #[default]
     Longitudinal,
+    /// The same, asked once a step where its motion is known beforehand.
+    QuasiStatic {
+        /// Between two rows of the trace [s].
+        record_s: f64,
+    },
     /// A body on wheels over the surface.
     RigidBody {
         /// The body.
@@ -98,6 +103,7 @@ impl Fidelity {
     pub fn told(&self) -> &'static str {
         match self {
             Self::Longitudinal => "longitudinal",
+            Self::QuasiStatic { .. } => "longitudinal, quasistatic",
             Self::RigidBody { .. } => "rigid body",
         }
     }
@@ -109,6 +115,9 @@ impl Fidelity {
     pub fn simulate(&self, model: &Model, cycle: &Cycle) -> Result<Outcome, RunError> {
         match self {
             Self::Longitudinal => Ok(headland_sim::simulate(model, cycle)?),
+            Self::QuasiStatic { record_s } => {
+                Ok(headland_sim::simulate_quasi_static(model, cycle, *record_s)?)
+            }
             Self::RigidBody { chassis, record_s } => simulate(model, chassis, cycle, *record_s),
         }
     }
@@ -227,8 +236,10 @@ pub fn fidelity(
     if let (Some(chassis), Some(axles)) = (&chassis, &model.axles) {
         chassis.check(axles).map_err(|refusal| refused(document, &BodyError::Chassis(refusal)))?;
     }
-    let FidelityFile::RigidBody { record_s } = file.simulation.fidelity else {
-        return Ok(Fidelity::Longitudinal);
+    let record_s = match file.simulation.fidelity {
+        FidelityFile::Longitudinal => return Ok(Fidelity::Longitudinal),
+        FidelityFile::QuasiStatic { record_s } => return Ok(Fidelity::QuasiStatic { record_s }),
+        FidelityFile::RigidBody { record_s } => record_s,
     };
     if model.axles.is_none() {
         return Err(lacks("axles"));

@@ -149,3 +149,36 @@ fn a_trailer_that_cannot_be_is_refused_where_it_stands() {
         assert!(told.contains(expected), "{told}");
     }
 }
+
+/// A drive at corners of a second: asked once a step it takes what it takes asked often, within what a step of a second leaves.
+#[test]
+fn a_quasistatic_run_takes_as_much_as_one_in_fine_steps() {
+    let text = |fidelity: &str, step_s: &str| {
+        format!(
+            "(about: \"town\", vehicle: include(\"vehicles/bmw_i3.ron\"),
+              ground: (terrain: Flat, soil: Constant(coefficient: 0.011)), air: (density_kg_m3: 1.2),
+              cycle: [Follow(times_s: [0, 1, 2, 3, 4, 5, 6, 9, 10, 11, 12], speeds_m_s: [0, 1.5, 3.5, 5, 6, 7, 7, 7, 5, 2, 0])],
+              simulation: (fidelity: {fidelity}, step_s: {step_s}))"
+        )
+    };
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios"));
+    let of = |text: &str| Scenario::of_text("test.ron", text, folder, &headland_stock::registry());
+    let registry = headland_stock::registry();
+    let simulated = |fidelity: &str, step_s: &str| {
+        let scenario = of(&text(fidelity, step_s)).unwrap();
+        let model = scenario.model(&registry).unwrap();
+        scenario.fidelity.simulate(&model, scenario.cycle.as_ref().unwrap()).unwrap()
+    };
+    let fine = simulated("Longitudinal", "0.01");
+    let quick = simulated("QuasiStatic(record_s: \"1 s\")", "1");
+    let fidelity = of(&text("QuasiStatic(record_s: 1)", "1")).unwrap().fidelity;
+    assert_eq!((quick.steps, fidelity), (12, Fidelity::QuasiStatic { record_s: 1.0 }));
+    assert!(
+        (quick.ledger.source_j / fine.ledger.source_j - 1.0).abs() < 0.02,
+        "{:?} {:?}",
+        quick.ledger,
+        fine.ledger
+    );
+    let refused = text("QuasiStatic(record_s: 0)", "1");
+    assert!(of(&refused).unwrap_err().told().contains("record_s"));
+}

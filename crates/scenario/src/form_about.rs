@@ -187,6 +187,12 @@ pub const ABOUT: &[(&str, &str, &str)] = &[
     ("scenario", "simulation", "how it is computed"),
     ("scenario", "simulation.fidelity", "what simulates it"),
     ("scenario", "simulation.fidelity.Longitudinal", "one degree of freedom along the path"),
+    (
+        "scenario",
+        "simulation.fidelity.QuasiStatic",
+        "the same, asked once a step where its motion is known beforehand",
+    ),
+    ("scenario", "simulation.fidelity.QuasiStatic.record_s", "at least between two rows of the trace"),
     ("scenario", "simulation.fidelity.RigidBody", "a chassis on wheels over the surface"),
     ("scenario", "simulation.fidelity.RigidBody.record_s", "between two rows of the trace"),
     ("scenario", "simulation.step_s", "of the integration"),

@@ -311,7 +311,8 @@ fn model(
         (None, false) => return Err(missing("ground", "ground", "soil")),
     };
     let axles = axles(document, &file.vehicle, soil.as_deref())?;
-    if let (Some(_), Some(soil), FidelityFile::Longitudinal) = (&axles, &soil, file.simulation.fidelity) {
+    let rolls_as_a_body = matches!(file.simulation.fidelity, FidelityFile::RigidBody { .. });
+    if let (Some(_), Some(soil), false) = (&axles, &soil, rolls_as_a_body) {
         remarks.extend(ground::beside_axles(document, soil.as_ref()));
     }
     let driveline =

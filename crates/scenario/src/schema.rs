@@ -166,5 +166,6 @@ pub struct SimulationFile {
 #[serde(rename = "fidelity")]
 pub enum FidelityFile {
     Longitudinal,
+    QuasiStatic { record_s: f64 },
     RigidBody { record_s: f64 },
 }

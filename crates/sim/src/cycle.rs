@@ -13,7 +13,7 @@ use headland_trace::TraceError;
 use std::collections::BTreeMap;
 
 /// A run of more steps would fill the memory: 10 million take some gigabytes, and are a day at 10 ms.
-const MOST_STEPS: usize = 10_000_000;
+pub(crate) const MOST_STEPS: usize = 10_000_000;
 
 /// Drives the model through the cycle.
 ///
@@ -21,6 +21,17 @@ const MOST_STEPS: usize = 10_000_000;
 /// [`TraceError`] where the steps do not make a trace, which would be a bug.
 pub fn simulate(model: &Model, cycle: &Cycle) -> Result<Outcome, TraceError> {
     drive(Running::new(model, cycle, None, 0.0), cycle)
+}
+
+/// Drives the model through the cycle, and asks it once a step, at the middle, wherever its motion is known beforehand: where a
+/// driver who knows the resistances follows a speed over time, and the drive can. A row of the trace is written at the middle of
+/// such a step where the last one is `record_s` [s] ago, and at the end of each phase.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_quasi_static(model: &Model, cycle: &Cycle, record_s: f64) -> Result<Outcome, TraceError> {
+    let run = Running::new(model, cycle, None, record_s);
+    drive(Running { quasi_static: true, ..run }, cycle)
 }
 
 /// Drives the model through the cycle on a carriage that moves it; a row of the trace is written every `record_s` [s], and
@@ -54,9 +65,11 @@ pub(crate) type Hopeless<'h> = &'h dyn Fn(&Machine, &Instant) -> Option<String>;
 /// A cycle that is being driven.
 pub(crate) struct Running<'a> {
     pub machine: Machine<'a>,
-    recorder: Recorder,
+    pub(crate) recorder: Recorder,
     /// Between two rows of the trace [s]; 0 for one each step.
-    record_s: f64,
+    pub(crate) record_s: f64,
+    /// Whether a motion that is known beforehand is asked for its forces once a step only.
+    pub(crate) quasi_static: bool,
     pub cycle: &'a Cycle,
     extent_m: Option<(f64, f64)>,
     pub target_m_s: f64,
@@ -86,6 +99,7 @@ impl<'a> Running<'a> {
             recorder: Recorder::new(&machine),
             machine,
             record_s,
+            quasi_static: false,
             cycle,
             extent_m: model.terrain.extent_m(),
             target_m_s: start.speed_m_s,
@@ -157,48 +171,69 @@ impl<'a> Running<'a> {
         piece_end_s: f64,
         hopeless: Hopeless,
     ) -> Result<bool, String> {
-        let end_s = ending.end_s.min(piece_end_s);
         loop {
-            let machine = &mut self.machine;
-            let instant = machine.instant(control);
-            if let Some(reason) = machine.stuck() {
-                return Err(reason);
+            if let Some(ended) = self.one(control, ending, piece_end_s, hopeless)? {
+                return Ok(ended);
             }
-            if !(instant.acceleration_m_s2.is_finite() && machine.speed_m_s().is_finite()) {
-                return Err("a force is not a finite number; look at the parameters of the models".to_owned());
-            }
-            let left_s = end_s - machine.time_s;
-            let over = left_s <= 0.0 || ending.left(&machine.moment()) <= 0.0;
-            let due_s = if over { 0.0 } else { ON_TIME * self.record_s };
-            if self.recorder.last_time_s().is_none_or(|last| machine.time_s > last + due_s) {
-                self.recorder.push(machine, &instant);
-            }
-            if over {
-                return Ok(machine.time_s >= ending.end_s || ending.left(&machine.moment()) <= 0.0);
-            }
-            if let Some(reason) = machine.exhausted(&instant).or_else(|| hopeless(machine, &instant)) {
-                return Err(reason);
-            }
-            if let Some(reason) = machine.trouble(&instant) {
-                return Err(reason);
-            }
-            if machine.steps >= MOST_STEPS {
-                return Err(format!("it takes more than {MOST_STEPS} steps of {} s", self.cycle.step_s));
-            }
-            if machine.time_s >= self.cycle.longest_s {
-                return Err(format!("the phase has not ended after {} s", self.cycle.longest_s));
-            }
-            // A last sliver of a step would only cost accuracy.
-            let step_s = if left_s < 1.000_001 * self.cycle.step_s { left_s } else { self.cycle.step_s };
-            machine.step(&instant, step_s, control, |at| ending.left(at));
-            if step_s == left_s && machine.time_s < end_s && end_s - machine.time_s < 1e-9 {
-                machine.time_s = end_s;
-            }
-            if let Some((from_m, to_m)) = self.extent_m
-                && !(from_m - LOCATED_M..=to_m + LOCATED_M).contains(&machine.position_m())
+        }
+    }
+
+    /// Makes a step; where there is none left, says whether the phase is over.
+    #[allow(clippy::inline_always, reason = "the inner loop")]
+    #[inline(always)]
+    pub(crate) fn one(
+        &mut self,
+        control: &impl crate::step::Control,
+        ending: &Ending,
+        piece_end_s: f64,
+        hopeless: Hopeless,
+    ) -> Result<Option<bool>, String> {
+        let end_s = ending.end_s.min(piece_end_s);
+        let machine = &mut self.machine;
+        let instant = machine.instant(control);
+        if let Some(reason) = machine.stuck() {
+            return Err(reason);
+        }
+        if !(instant.acceleration_m_s2.is_finite() && machine.speed_m_s().is_finite()) {
+            return Err("a force is not a finite number; look at the parameters of the models".to_owned());
+        }
+        let left_s = end_s - machine.time_s;
+        let over = left_s <= 0.0 || ending.left(&machine.moment()) <= 0.0;
+        let due_s = if over { 0.0 } else { ON_TIME * self.record_s };
+        if self.recorder.last_time_s().is_none_or(|last| machine.time_s > last + due_s) {
+            self.recorder.push(machine, &instant);
+        }
+        if over {
+            return Ok(Some(machine.time_s >= ending.end_s || ending.left(&machine.moment()) <= 0.0));
+        }
+        if let Some(reason) = machine.exhausted(&instant).or_else(|| hopeless(machine, &instant)) {
+            return Err(reason);
+        }
+        if let Some(reason) = machine.trouble(&instant) {
+            return Err(reason);
+        }
+        if machine.steps >= MOST_STEPS {
+            return Err(format!("it takes more than {MOST_STEPS} steps of {} s", self.cycle.step_s));
+        }
+        if machine.time_s >= self.cycle.longest_s {
+            return Err(format!("the phase has not ended after {} s", self.cycle.longest_s));
+        }
+        let step_s = sliver(left_s, self.cycle.step_s);
+        machine.step(&instant, step_s, control, |at| ending.left(at));
+        if step_s == left_s && machine.time_s < end_s && end_s - machine.time_s < 1e-9 {
+            machine.time_s = end_s;
+        }
+        self.within_the_path().map(|()| None)
+    }
+
+    pub(crate) fn within_the_path(&self) -> Result<(), String> {
+        match self.extent_m {
+            Some((from_m, to_m))
+                if !(from_m - LOCATED_M..=to_m + LOCATED_M).contains(&self.machine.position_m()) =>
             {
-                return Err(format!("the path ends: it runs from {from_m} m to {to_m} m"));
+                Err(format!("the path ends: it runs from {from_m} m to {to_m} m"))
             }
+            _ => Ok(()),
         }
     }
 
@@ -222,8 +257,13 @@ impl<'a> Running<'a> {
     }
 }
 
+/// The next step where `left_s` [s] are left: a last sliver of one would only cost accuracy.
+pub(crate) fn sliver(left_s: f64, step_s: f64) -> f64 {
+    if left_s < 1.000_001 * step_s { left_s } else { step_s }
+}
+
 /// A row is due this early, as a part of the time between two: so many roundings of steps are no step more.
-const ON_TIME: f64 = 1.0 - 1e-6;
+pub(crate) const ON_TIME: f64 = 1.0 - 1e-6;
 
 /// A path that is driven to its very end is left by the rounding of a located end [m].
 const LOCATED_M: f64 = 1e-6;

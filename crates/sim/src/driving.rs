@@ -36,7 +36,7 @@ impl Running<'_> {
             Phase::Reach { speed_m_s, acceleration_m_s2 } => self.reach(*speed_m_s, *acceleration_m_s2),
             Phase::Hold { for_s } => {
                 let ending = Ending::of(&Until::Elapsed(*for_s), &self.machine)?;
-                if self.setting.driver.is_some() {
+                if self.quasi_static || self.setting.driver.is_some() {
                     let reference = Reference::steady(begin_s, self.target_m_s);
                     return self.follow(&reference, &ending, &never);
                 }
@@ -183,9 +183,17 @@ impl Running<'_> {
         // A piece ends where the next one begins, to the bit: rounding must not leave the vehicle on the last one.
         for (piece, corner_s) in reference.corners_s().into_iter().chain([f64::INFINITY]).enumerate() {
             let control = |at: &Moment| driver.follow(reference, piece, memory, at, given(at.time_s));
-            let end_s = if corner_s.is_finite() { corner_s } else { self.machine.time_s };
-            self.target_m_s = reference.speed_m_s(end_s);
-            if self.until(&control, ending, corner_s, hopeless)? {
+            self.target_m_s = if corner_s.is_finite() {
+                reference.on(piece + 1, corner_s).0
+            } else {
+                reference.speed_m_s(self.machine.time_s)
+            };
+            let ended = if self.quasi_static && matches!(driver, Driver::Knowing(_)) {
+                self.along((reference, piece), &control, ending, corner_s, hopeless)?
+            } else {
+                self.until(&control, ending, corner_s, hopeless)?
+            };
+            if ended {
                 break;
             }
         }
@@ -222,7 +230,12 @@ impl Running<'_> {
         }
         let given = self.given();
         let control = |at: &Moment| (Command::Accelerate(0.0), given(at.time_s));
-        self.until(&control, ending, f64::INFINITY, &never)?;
+        if self.quasi_static {
+            let rest = Reference::steady(self.machine.time_s, 0.0);
+            self.along((&rest, 0), &control, ending, f64::INFINITY, &never)?;
+        } else {
+            self.until(&control, ending, f64::INFINITY, &never)?;
+        }
         Ok(ending.told(&self.machine.moment()))
     }
 }

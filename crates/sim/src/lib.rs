@@ -22,6 +22,9 @@ mod model;
 #[cfg(test)]
 mod physics_tests;
 mod plan;
+mod quasi_static;
+#[cfg(test)]
+mod quasi_static_tests;
 mod recorder;
 mod reference;
 mod replay;
@@ -34,7 +37,7 @@ mod wheels;
 
 pub use axles::{Axle, Axles};
 pub use carriage::{AxleMotion, Carriage, Motion, Push, Stepped};
-pub use cycle::{simulate, simulate_on};
+pub use cycle::{simulate, simulate_on, simulate_quasi_static};
 pub use ledger::{Entry, Ledger};
 pub use model::{Model, Named, Resistance, Vehicle};
 pub use plan::{Cycle, Driven, EngineSpeed, Guard, Phase, Pi, Setting, Start, Until};

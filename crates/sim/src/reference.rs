@@ -37,7 +37,7 @@ impl Reference {
     }
 
     /// Speed [m/s] and its slope [m/s²] on a piece, counted by its first point; behind the last point it stays.
-    fn on(&self, piece: usize, time_s: f64) -> (f64, f64) {
+    pub fn on(&self, piece: usize, time_s: f64) -> (f64, f64) {
         let (t0, v0) = self.points[piece];
         match self.points.get(piece + 1) {
             Some((t1, v1)) => {

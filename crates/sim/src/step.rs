@@ -54,11 +54,11 @@ pub(crate) struct Machine<'a> {
     /// Position, speed, states, energies.
     pub(crate) y: Vec<f64>,
     pub(crate) scratch: Scratch,
-    start: Vec<f64>,
-    stage: Vec<f64>,
+    pub(crate) start: Vec<f64>,
+    pub(crate) stage: Vec<f64>,
     pub(crate) slopes: [Vec<f64>; 4],
     pub(crate) first_kinetic_j: Option<f64>,
-    mass_kg: f64,
+    pub(crate) mass_kg: f64,
     /// Effective mass at the second, third and fourth stage of the last step [kg].
     stage_masses_kg: [f64; 3],
     /// Speed at those stages [m/s].
@@ -204,7 +204,7 @@ impl<'a> Machine<'a> {
     }
 
     /// Lets the driveline decide; says whether anything changed. Who remembers nothing decides nothing.
-    fn decide(&mut self, instant: &Instant) -> bool {
+    pub(crate) fn decide(&mut self, instant: &Instant) -> bool {
         let own = &self.layout.driveline;
         !own.is_empty()
             && self
@@ -248,7 +248,7 @@ impl<'a> Machine<'a> {
 
     #[allow(clippy::inline_always, reason = "see the balance")]
     #[inline(always)]
-    fn derive(
+    pub(crate) fn derive(
         &mut self,
         time_s: f64,
         y: &[f64],
@@ -342,7 +342,7 @@ impl<'a> Machine<'a> {
     }
 
     /// Books the kinetic energy that mass brings when it comes aboard, or is coupled, at speed.
-    fn book_mass(&mut self, mass_kg: f64) {
+    pub(crate) fn book_mass(&mut self, mass_kg: f64) {
         let gain = 0.5 * (mass_kg - self.mass_kg) * self.y[SPEED] * self.y[SPEED];
         let account = FIRST_STATE + self.layout.states.len() + MASS_CHANGE;
         self.y[account] -= gain;

@@ -33,7 +33,7 @@ impl Plugin for Flat {
 
 impl Terrain for Flat {
     fn at(&self, position_m: f64) -> Place {
-        let (sin, cos) = self.heading_rad.sin_cos();
+        let (sin, cos) = if self.heading_rad == 0.0 { (0.0, 1.0) } else { self.heading_rad.sin_cos() };
         Place {
             heading_rad: self.heading_rad,
             east_m: position_m * sin,

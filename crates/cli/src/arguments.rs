@@ -82,7 +82,7 @@ pub struct RunOptions {
 /// Whether and how runs are drawn by Rerun.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct RerunOptions {
-    /// Write a file for the Rerun viewer as well: `run.rrd`, `diagnosis.rrd`
+    /// Write a file for the Rerun viewer as well: `run.rrd`, `diagnosis.rrd` or `batch.rrd`
     #[arg(long)]
     pub rerun: bool,
     /// Open the Rerun viewer
@@ -181,6 +181,12 @@ pub struct BatchOptions {
     /// Throw away what is finished in the folder and begin again
     #[arg(long)]
     pub anew: bool,
+    /// Draw this run, by its number in `results.parquet`; repeatable. Without it the first of every variant is drawn
+    #[arg(long, value_name = "NUMBER")]
+    pub drawn: Vec<u64>,
+    /// Pictures
+    #[command(flatten)]
+    pub picture: RerunOptions,
 }
 
 /// Options of `headland cvt-map`.

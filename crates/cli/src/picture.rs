@@ -2,6 +2,8 @@
 
 use crate::arguments::RerunOptions;
 use crate::failure::Failure;
+#[cfg(feature = "rerun")]
+use crate::failure::interrupted;
 use crate::held::Pair;
 use crate::output::Output;
 #[cfg(feature = "rerun")]
@@ -14,6 +16,8 @@ use headland_plugin::Registry;
 use headland_recording::Recording;
 use headland_scenario::Scenario;
 use headland_trace::Run;
+#[cfg(feature = "rerun")]
+use std::path::Path;
 use std::path::PathBuf;
 
 /// What is wanted of Rerun.
@@ -30,6 +34,11 @@ impl Wanted {
     pub fn of(options: RerunOptions) -> Self {
         let RerunOptions { rerun, view, serve } = options;
         Self { write: rerun || view || serve, view, serve }
+    }
+
+    /// Whether anything is.
+    pub fn any(self) -> bool {
+        self.write
     }
 
     /// Whether this program can draw, asked before anything is simulated.
@@ -70,7 +79,7 @@ impl Picture {
             path.display(),
             server.address()
         ));
-        server.wait().map_err(refused)
+        server.wait(&interrupted).map_err(refused)
     }
 }
 
@@ -97,7 +106,6 @@ pub fn draw(wanted: Wanted, _: &Drawn, _: &mut Output) -> Result<Picture, Failur
 /// Writes `run.rrd` and opens the viewer, as wanted.
 #[cfg(feature = "rerun")]
 pub fn draw(wanted: Wanted, drawn: &Drawn, output: &mut Output) -> Result<Picture, Failure> {
-    use headland_view::{Axis, ForceArrow, Scene, Setting};
     if !wanted.write {
         return Ok(Picture { served: None });
     }
@@ -109,34 +117,89 @@ pub fn draw(wanted: Wanted, drawn: &Drawn, output: &mut Output) -> Result<Pictur
     // A recording without a place cannot be drawn; its speed stands in the plots all the same.
     let placed = |run: &Run| run.trace.get("position_m").is_some() || run.trace.get("east_m").is_some();
     let measured: Vec<Run> = measured.into_iter().filter(placed).collect();
-    let arrow = |channel, label, axis| ForceArrow { channel, label, axis };
-    let all = [
-        arrow("tractive_force_n", "traction", Axis::Forward),
-        arrow("soil_resistance_n", "soil", Axis::Backward),
-        arrow("air_resistance_n", "air", Axis::Backward),
-        arrow("slope_resistance_n", "slope", Axis::Backward),
-        arrow("brake_force_n", "brakes", Axis::Backward),
-        arrow("drawbar_force_n", "drawbar", Axis::Backward),
-    ];
-    let there = |arrow: &ForceArrow| runs.iter().any(|run| run.trace.channel(arrow.channel).is_some());
-    let forces: Vec<ForceArrow> = all.into_iter().filter(there).collect();
     // A replay follows its recording, wherever that was driven.
     let stages = if pairs.is_empty() { scenery::stages(scenario, registry, runs)? } else { Vec::new() };
-    let settings: Vec<Setting> = stages.iter().map(Stage::setting).collect();
-    let vehicle =
-        stages.iter().find_map(|stage| stage.rig.as_ref()).map_or_else(|| body(scenario), scenery::body);
-    let scene = Scene {
-        title: &scenario.about,
-        runs,
-        measured: &measured,
-        forces: &forces,
-        vehicle,
-        ground: None,
-        settings: &settings,
-    };
+    let all = All { title: &scenario.about, runs, measured: &measured, stages: &stages };
     let path = output.file("run.rrd");
-    headland_view::write(&scene, &path).map_err(refused)?;
+    all.write(scenario, &path)?;
     opened(wanted, path)
+}
+
+/// Runs of a batch, each by a scenario of its own.
+#[cfg_attr(not(feature = "rerun"), allow(dead_code, reason = "what is drawn is read by Rerun alone"))]
+#[derive(Debug)]
+pub struct Chosen {
+    /// What the batch is about.
+    pub title: String,
+    /// What describes each run alone.
+    pub scenarios: Vec<Scenario>,
+    /// The runs.
+    pub runs: Vec<Run>,
+}
+
+/// Writes `batch.rrd` and opens the viewer, as wanted.
+#[cfg(not(feature = "rerun"))]
+pub fn draw_batch(wanted: Wanted, _: &Chosen, _: &Registry, _: &mut Output) -> Result<Picture, Failure> {
+    wanted.possible().map(|()| Picture { served: None })
+}
+
+/// Writes `batch.rrd` and opens the viewer, as wanted.
+#[cfg(feature = "rerun")]
+pub fn draw_batch(
+    wanted: Wanted,
+    chosen: &Chosen,
+    registry: &Registry,
+    output: &mut Output,
+) -> Result<Picture, Failure> {
+    let Some(first) = chosen.scenarios.first() else { return Ok(Picture { served: None }) };
+    let own = chosen.runs.iter().zip(&chosen.scenarios);
+    let stages: Vec<Stage> =
+        own.map(|(run, scenario)| scenery::stage(&run.id, scenario, registry)).collect::<Result<_, _>>()?;
+    let all = All { title: &chosen.title, runs: &chosen.runs, measured: &[], stages: &stages };
+    let path = output.file("batch.rrd");
+    all.write(first, &path)?;
+    opened(wanted, path)
+}
+
+/// Everything of a scene.
+#[cfg(feature = "rerun")]
+struct All<'a> {
+    title: &'a str,
+    runs: &'a [Run],
+    measured: &'a [Run],
+    stages: &'a [Stage],
+}
+
+#[cfg(feature = "rerun")]
+impl All<'_> {
+    /// The file of the scene, with a vehicle of the scenario's size.
+    fn write(&self, scenario: &Scenario, path: &Path) -> Result<(), Failure> {
+        use headland_view::{Axis, ForceArrow, Scene, Setting};
+        let arrow = |channel, label, axis| ForceArrow { channel, label, axis };
+        let all = [
+            arrow("tractive_force_n", "traction", Axis::Forward),
+            arrow("soil_resistance_n", "soil", Axis::Backward),
+            arrow("air_resistance_n", "air", Axis::Backward),
+            arrow("slope_resistance_n", "slope", Axis::Backward),
+            arrow("brake_force_n", "brakes", Axis::Backward),
+            arrow("drawbar_force_n", "drawbar", Axis::Backward),
+        ];
+        let there =
+            |arrow: &ForceArrow| self.runs.iter().any(|run| run.trace.channel(arrow.channel).is_some());
+        let forces: Vec<ForceArrow> = all.into_iter().filter(there).collect();
+        let settings: Vec<Setting> = self.stages.iter().map(Stage::setting).collect();
+        let rig = self.stages.iter().find_map(|stage| stage.rig.as_ref());
+        let scene = Scene {
+            title: self.title,
+            runs: self.runs,
+            measured: self.measured,
+            forces: &forces,
+            vehicle: rig.map_or_else(|| body(scenario), scenery::body),
+            ground: None,
+            settings: &settings,
+        };
+        headland_view::write(&scene, path).map_err(refused)
+    }
 }
 
 /// Writes `diagnosis.rrd` and opens the viewer, as wanted.

@@ -41,33 +41,36 @@ impl Stage {
     }
 }
 
-/// What each of the runs was driven with.
+/// What each of the runs of a scenario was driven with.
 pub fn stages(scenario: &Scenario, registry: &Registry, runs: &[Run]) -> Result<Vec<Stage>, Failure> {
-    let stage = |run: &Run| {
+    let own = |run: &Run| {
         let own = RunSpec { id: run.id.clone(), with: Vec::new() };
         let spec = scenario.runs.iter().find(|spec| spec.id == run.id).unwrap_or(&own);
-        let scenario = scenario.run(spec, registry)?;
-        let model = scenario.model(registry)?;
-        let (rig, trailer) = match &scenario.fidelity {
-            Fidelity::Longitudinal | Fidelity::QuasiStatic { .. } => (None, None),
-            Fidelity::RigidBody { chassis, .. } => {
-                let failed = |error: BodyError| Failure::Machine(error.to_string());
-                let wheels = hubs(&model, chassis).map_err(failed)?.into_iter().map(wheel).collect();
-                let centre_height_m =
-                    model.axles.as_ref().map_or(0.0, |axles| axles.centre_of_gravity_height_m);
-                let trailer = trailer_hubs(&model, chassis).map_err(failed)?.map(|trailer| Towed {
-                    rig: Rig {
-                        centre_height_m: trailer.centre_height_m,
-                        wheels: trailer.hubs.into_iter().map(wheel).collect(),
-                    },
-                    coupling_m: trailer.coupling_m,
-                });
-                (Some(Rig { centre_height_m, wheels }), trailer)
-            }
-        };
-        Ok(Stage { run: run.id.clone(), rig, trailer, model })
+        stage(&run.id, &scenario.run(spec, registry)?, registry)
     };
-    runs.iter().map(stage).collect()
+    runs.iter().map(own).collect()
+}
+
+/// What a run was driven with that a scenario describes alone.
+pub fn stage(run: &str, scenario: &Scenario, registry: &Registry) -> Result<Stage, Failure> {
+    let model = scenario.model(registry)?;
+    let (rig, trailer) = match &scenario.fidelity {
+        Fidelity::Longitudinal | Fidelity::QuasiStatic { .. } => (None, None),
+        Fidelity::RigidBody { chassis, .. } => {
+            let failed = |error: BodyError| Failure::Machine(error.to_string());
+            let wheels = hubs(&model, chassis).map_err(failed)?.into_iter().map(wheel).collect();
+            let centre_height_m = model.axles.as_ref().map_or(0.0, |axles| axles.centre_of_gravity_height_m);
+            let trailer = trailer_hubs(&model, chassis).map_err(failed)?.map(|trailer| Towed {
+                rig: Rig {
+                    centre_height_m: trailer.centre_height_m,
+                    wheels: trailer.hubs.into_iter().map(wheel).collect(),
+                },
+                coupling_m: trailer.coupling_m,
+            });
+            (Some(Rig { centre_height_m, wheels }), trailer)
+        }
+    };
+    Ok(Stage { run: run.to_owned(), rig, trailer, model })
 }
 
 fn wheel(hub: Hub) -> RigWheel {

@@ -5,7 +5,7 @@ use crate::groups::{Group, Rank};
 use crate::lanes::Lane;
 use crate::layout::{LEGEND, Layout, Node};
 use crate::path::Pose;
-use crate::plots::{COMPARED, residual};
+use crate::plots::{BESIDE, COMPARED, residual};
 use crate::{Scene, ViewError};
 use rerun::external::re_sdk_types::blueprint::archetypes::{Background, EyeControls3D, LineGrid3D};
 use rerun::external::re_sdk_types::blueprint::components::{BackgroundKind, ContainerKind};
@@ -90,13 +90,8 @@ impl Scenic {
     fn plots(&mut self, groups: &[Group], lanes: &[Lane]) -> Result<Node, ViewError> {
         let mut tabs = Vec::with_capacity(lanes.len() + 1);
         if let [_, _, ..] = lanes {
-            let speeds: Vec<EntityPath> = lanes
-                .iter()
-                .flat_map(|lane| {
-                    [Who::Modelled, Who::Measured].map(|who| entity::channel(&lane.run.id, COMPARED, who))
-                })
-                .collect();
-            tabs.push(self.plot("Speed of all runs [m/s]", &speeds)?);
+            let overview = self.overview(lanes)?;
+            tabs.push(overview);
         }
         for lane in lanes {
             let name = if lanes.len() > 1 { lane.run.id.as_str() } else { "" };
@@ -107,6 +102,33 @@ impl Scenic {
             return Ok(only.clone());
         }
         self.layout.split(ContainerKind::Tabs, "Runs", &tabs, &[])
+    }
+
+    /// What all runs are held beside one another by.
+    fn overview(&mut self, lanes: &[Lane]) -> Result<Node, ViewError> {
+        let mut plots = Vec::with_capacity(BESIDE.len());
+        for (channel, title, _) in BESIDE {
+            let knows = |lane: &&Lane| lane.run.trace.channel(channel).is_some();
+            let lines: Vec<EntityPath> = lanes
+                .iter()
+                .filter(knows)
+                .flat_map(|lane| {
+                    let id = &lane.run.id;
+                    if channel == COMPARED {
+                        [Who::Modelled, Who::Measured].map(|who| entity::channel(id, channel, who)).to_vec()
+                    } else {
+                        vec![entity::beside(channel, id)]
+                    }
+                })
+                .collect();
+            if !lines.is_empty() {
+                plots.push(self.plot(title, &lines)?);
+            }
+        }
+        if let [only] = plots.as_slice() {
+            return Ok(only.clone());
+        }
+        self.layout.split(ContainerKind::Vertical, "All runs", &plots, &vec![1.0; plots.len()])
     }
 
     /// Speed, its residual, forces, powers, and tabs for wheels and for the rest.

@@ -46,6 +46,11 @@ pub(crate) fn channel(run: &str, channel: &str, who: Who) -> EntityPath {
     entity(&["channels", run, channel, who.name()])
 }
 
+/// A channel of a run beside the same of the others.
+pub(crate) fn beside(channel: &str, run: &str) -> EntityPath {
+    entity(&["beside", channel, run])
+}
+
 /// The text.
 pub(crate) fn summary() -> EntityPath {
     entity(&["summary"])

@@ -119,6 +119,14 @@ pub enum ViewError {
         /// The version that fits.
         version: &'static str,
     },
+    /// A viewer that is served does not answer.
+    #[error("{} does not answer after {seconds} s", viewer.display())]
+    Silent {
+        /// The viewer.
+        viewer: PathBuf,
+        /// How long was waited [s].
+        seconds: u64,
+    },
     /// The viewer ended as soon as it was started.
     #[error("{} ended at once ({status}); it needs a display and a graphics driver", viewer.display())]
     Ended {

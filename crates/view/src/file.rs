@@ -106,6 +106,9 @@ pub(crate) fn messages(scene: &Scene) -> Result<Vec<LogMsg>, ViewError> {
         }
         forces::draw(&to, scene, run, (newton_per_m, labelled))?;
         plots::draw(&to, scene, &groups, lane)?;
+        if scene.runs.len() > 1 {
+            plots::beside(&to, lane)?;
+        }
     }
     let text = TextDocument::from_markdown(summary::summary(scene, &scales, &grounds));
     to.fixed(&entity::summary(), &text)?;

@@ -14,6 +14,24 @@ use rerun::{Color, EntityPath, Scalars, SeriesLines};
 /// The channel whose difference gets a line of its own.
 pub(crate) const COMPARED: &str = "speed_m_s";
 
+/// Channels by which several runs are held beside one another: channel, title with its unit, and the factor to that unit.
+pub(crate) const BESIDE: [(&str, &str, f64); 3] = [
+    (COMPARED, "Speed of all runs [m/s]", 1.0),
+    ("fuel_m3", "Fuel of all runs [L]", 1e3),
+    ("state_of_charge", "State of charge of all runs [1]", 1.0),
+];
+
+/// Draws the channels by which several runs are held beside one another, each run in its colour.
+pub(crate) fn beside(to: &Recorder, lane: &Lane) -> Result<(), ViewError> {
+    for (channel, _, factor) in BESIDE.iter().skip(1) {
+        let Some(values) = lane.run.trace.get(channel) else { continue };
+        let values: Vec<f64> = values.iter().map(|value| factor * value).collect();
+        let id = &lane.run.id;
+        line(to, &entity::beside(channel, id), id, lane.colour, 2.0, lane.run.trace.time_s(), &values)?;
+    }
+    Ok(())
+}
+
 /// Draws every channel of a run and of its recording.
 pub(crate) fn draw(to: &Recorder, scene: &Scene, groups: &[Group], lane: &Lane) -> Result<(), ViewError> {
     let id = &lane.run.id;

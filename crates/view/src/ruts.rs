@@ -147,16 +147,7 @@ fn of_depth(share: f64) -> Colour {
 mod tests {
     use super::*;
     use crate::scene::tests::run;
-
-    fn wheel() -> RigWheel {
-        RigWheel {
-            name: "axle_1_left".to_owned(),
-            hub_m: [1.5, 1.0, 0.9],
-            radius_m: 1.0,
-            width_m: 0.6,
-            squeezed_m: 0.1,
-        }
-    }
+    use crate::setting::tests::wheel;
 
     /// Heading north: ahead is north, left is west. The suspension is 0.05 m more squeezed than on level ground, the tyre gives
     /// way by 0.1 m and stands 0.2 m deep: the ground was at 0.9 + 0.05 − (1.0 − 0.1 − 0.2) = 0.25 m.

@@ -99,3 +99,19 @@ impl Rig {
         }
     }
 }
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::RigWheel;
+
+    /// The left wheel in front: 2 m in diameter, squeezed by 0.1 m on level ground.
+    pub(crate) fn wheel() -> RigWheel {
+        RigWheel {
+            name: "axle_1_left".to_owned(),
+            hub_m: [1.5, 1.0, 0.9],
+            radius_m: 1.0,
+            width_m: 0.6,
+            squeezed_m: 0.1,
+        }
+    }
+}

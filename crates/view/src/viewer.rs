@@ -2,9 +2,8 @@
 
 use crate::{Scene, ViewError, write};
 use std::ffi::OsStr;
-use std::net::TcpListener;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -13,9 +12,6 @@ pub const VIEWER_VERSION: &str = "0.36.3";
 
 /// How long a viewer may take to find out that it cannot start.
 const GRACE: Duration = Duration::from_millis(1500);
-
-/// The address that only this machine reaches.
-const LOOPBACK: &str = "127.0.0.1";
 
 /// Writes the scene to a file in the system's folder for such files and starts the viewer on it; gives the file.
 ///
@@ -38,79 +34,8 @@ pub fn show(path: &Path) -> Result<(), ViewError> {
     start(&find(path, std::env::var_os("PATH").as_deref())?, path)
 }
 
-/// A viewer for browsers on this machine; it ends when this is dropped.
-#[derive(Debug)]
-pub struct Server {
-    child: Child,
-    viewer: PathBuf,
-    address: String,
-}
-
-impl Server {
-    /// What a browser opens.
-    pub fn address(&self) -> &str {
-        &self.address
-    }
-
-    /// Waits until the server ends, as it does when it is interrupted.
-    ///
-    /// # Errors
-    /// [`ViewError::File`] where the system refuses to wait.
-    pub fn wait(mut self) -> Result<(), ViewError> {
-        let waited = self.child.wait().map(drop);
-        waited.map_err(|source| ViewError::File { path: self.viewer.clone(), source })
-    }
-}
-
-impl Drop for Server {
-    fn drop(&mut self) {
-        // Where it has ended already there is nothing to end.
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
-/// Serves the viewer with a file to browsers on this machine, and to no other.
-///
-/// # Errors
-/// What [`show`] refuses; [`ViewError::File`] where the machine has no free ports.
-pub fn serve(path: &Path) -> Result<Server, ViewError> {
-    let viewer = find(path, std::env::var_os("PATH").as_deref())?;
-    start_server(&viewer, path)
-}
-
-fn start_server(viewer: &Path, path: &Path) -> Result<Server, ViewError> {
-    let file_error = |source| ViewError::File { path: viewer.to_owned(), source };
-    // Both are free at once: the listeners are dropped together.
-    let listeners = [0; 2].map(|port: u16| TcpListener::bind((LOOPBACK, port)));
-    let mut ports = Vec::with_capacity(2);
-    for listener in &listeners {
-        let listener = listener.as_ref().map_err(|error| file_error(std::io::Error::from(error.kind())))?;
-        ports.push(listener.local_addr().map_err(file_error)?.port().to_string());
-    }
-    drop(listeners);
-    let (data, page) = (&ports[0], &ports[1]);
-    let child = Command::new(viewer)
-        .args(["--serve-web", "--bind", LOOPBACK, "--port", data, "--web-viewer-port", page])
-        .arg(path)
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .map_err(file_error)?;
-    let address = format!("http://{LOOPBACK}:{page}/?url=rerun%2Bhttp%3A%2F%2F{LOOPBACK}%3A{data}%2Fproxy");
-    let mut server = Server { child, viewer: viewer.to_owned(), address };
-    let started = Instant::now();
-    while started.elapsed() < GRACE {
-        if let Some(status) = server.child.try_wait().map_err(file_error)? {
-            return Err(ViewError::Ended { viewer: viewer.to_owned(), status });
-        }
-        sleep(Duration::from_millis(50));
-    }
-    Ok(server)
-}
-
-fn find(file: &Path, folders: Option<&OsStr>) -> Result<PathBuf, ViewError> {
+/// The viewer on the PATH, of a version that can read the file.
+pub(crate) fn find(file: &Path, folders: Option<&OsStr>) -> Result<PathBuf, ViewError> {
     let name = format!("rerun{}", std::env::consts::EXE_SUFFIX);
     let missing = || ViewError::NoViewer { path: file.to_owned(), version: VIEWER_VERSION };
     let viewer = std::env::split_paths(folders.ok_or_else(missing)?)
@@ -217,24 +142,6 @@ mod tests {
             assert!(matches!(&error, ViewError::Ended { .. }), "{error}");
             let works = program(folder.path(), "exit 0");
             start(&works, Path::new("run.rrd")).unwrap();
-        }
-
-        /// The program writes down what it is told, and then waits as a server does.
-        #[test]
-        fn what_is_served_is_bound_to_this_machine_alone() {
-            let folder = tempfile::tempdir().unwrap();
-            let told = folder.path().join("told");
-            let server = program(folder.path(), &format!("echo \"$@\" > {}; exec sleep 60", told.display()));
-            let server = start_server(&server, Path::new("run.rrd")).unwrap();
-            let told = std::fs::read_to_string(told).unwrap();
-            assert!(
-                told.starts_with("--serve-web --bind 127.0.0.1 --port ") && told.ends_with(" run.rrd\n"),
-                "{told}"
-            );
-            assert!(server.address().starts_with("http://127.0.0.1:"), "{}", server.address());
-            drop(server);
-            let ends = program(folder.path(), "exit 3");
-            assert!(matches!(start_server(&ends, Path::new("run.rrd")), Err(ViewError::Ended { .. })));
         }
     }
 }

@@ -139,16 +139,7 @@ pub(crate) fn draw_forces(
 mod tests {
     use super::*;
     use crate::scene::tests::run;
-
-    fn wheel() -> RigWheel {
-        RigWheel {
-            name: "axle_1_left".to_owned(),
-            hub_m: [1.5, 1.0, 0.9],
-            radius_m: 1.0,
-            width_m: 0.6,
-            squeezed_m: 0.0,
-        }
-    }
+    use crate::setting::tests::wheel;
 
     /// 2 m/s: a slip of 0.2 rolls at 2.5 m/s, one of −0.5 at 1 m/s.
     #[test]

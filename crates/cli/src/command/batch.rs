@@ -1,10 +1,12 @@
 //! `headland batch`: many runs, compared.
 
+use super::drawn;
 use crate::arguments::BatchOptions;
 use crate::failure::{Failure, interrupted};
 use crate::output::Output;
 use crate::pace::Pace;
 use crate::page::{self, short};
+use crate::picture::{Wanted, draw_batch};
 use crate::say::Say;
 use headland_batch::{BatchError, Comparison, Journal, Plan, Settings, Statistics, Summary, execute, table};
 use headland_plugin::Registry;
@@ -60,10 +62,28 @@ struct Trouble {
 
 /// Runs the command.
 pub fn batch(registry: &Registry, options: &BatchOptions, seed: u64, say: Say) -> Result<(), Failure> {
+    let pictures = Wanted::of(options.picture);
+    pictures.possible()?;
+    if !options.drawn.is_empty() && !pictures.any() {
+        return Err(Failure::Input("--drawn goes with --rerun, --view or --serve".to_owned()));
+    }
     let comparison = Comparison::read(&options.comparison)?;
+    if !options.drawn.is_empty() {
+        // A number of no run is said before anything is simulated.
+        let plan = Plan::new(Comparison::read(&options.comparison)?, registry, seed)?;
+        drawn::numbers(&plan, &options.drawn)?;
+    }
     let mut output = Output::new(options.out.as_deref(), &options.comparison)?;
     let done = run(registry, comparison, (options.traces, options.anew), &mut output, seed, say)?;
-    finish(&done, &output, say)
+    if !pictures.any() {
+        return finish(&done, &output, say);
+    }
+    let numbers = drawn::numbers(&done.plan, &options.drawn)?;
+    let chosen = drawn::chosen(&done.plan, registry, &numbers)?;
+    let picture = draw_batch(pictures, &chosen, registry, &mut output)?;
+    let finished = finish(&done, &output, say);
+    picture.serve(say)?;
+    finished
 }
 
 /// A batch that is finished.

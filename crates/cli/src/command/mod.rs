@@ -8,6 +8,7 @@ pub mod compare;
 pub mod cvt_map;
 pub mod demo;
 pub mod diagnose;
+mod drawn;
 pub mod plugins;
 pub mod run;
 pub mod schema;

@@ -302,3 +302,37 @@ fn a_second_batch_in_the_same_folder_is_refused() {
     assert!(code == Some(2) && told.contains("another batch is at work"), "{told}");
     assert!(first.wait().unwrap().success());
 }
+
+/// Whether this program draws or not, what cannot be drawn is said before anything is simulated.
+#[test]
+fn runs_of_a_batch_that_cannot_be_drawn_are_refused_by_number() {
+    let place = place(COMPARISON);
+    let refused = |more: &[&str], expected: &str| {
+        let (code, told) = status(batch(&place, "out", more));
+        assert!(code == Some(2) && told.contains(expected), "{code:?} {told}");
+        assert!(!Path::new(&place.path("out/results.parquet")).exists());
+    };
+    refused(&["--drawn", "3"], "--drawn goes with --rerun");
+    if cfg!(feature = "rerun") {
+        refused(&["--rerun", "--drawn", "320"], "--drawn 320: there is no such run, expected 0 to 319");
+        refused(&["--rerun", "--drawn", "3", "--drawn", "3"], "--drawn 3 stands twice");
+    } else {
+        refused(&["--rerun"], "--features rerun");
+    }
+}
+
+#[test]
+fn runs_of_a_batch_are_drawn_beside_one_another() {
+    if cfg!(not(feature = "rerun")) {
+        return;
+    }
+    let place = place(COMPARISON);
+    let (code, told) = status(batch(&place, "out", &["--rerun"]));
+    assert_eq!(code, Some(0), "{told}");
+    let picture = |place: &Place| std::fs::metadata(place.path("out/batch.rrd")).unwrap().len();
+    let two = picture(&place);
+    // The batch is finished; it is drawn again all the same, now a single run.
+    let (code, told) = status(batch(&place, "out", &["--rerun", "--drawn", "319"]));
+    assert_eq!(code, Some(0), "{told}");
+    assert!(picture(&place) < two, "{} {two}", picture(&place));
+}

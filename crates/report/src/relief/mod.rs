@@ -3,11 +3,17 @@
 //! It is an SVG that stands alone, as wide as a page.
 
 mod contour;
+mod frame;
+mod line;
 mod profile;
+mod scale;
 mod shade;
 
 use crate::html::escape;
 use crate::number::{number, quantity};
+use frame::Frame;
+use line::{arrows, polyline, text, thinned};
+use scale::{contour_step, ends, multiples};
 use std::fmt::Write;
 
 /// What is drawn.
@@ -56,128 +62,10 @@ const MAP_WIDTH: f64 = 770.0;
 const MAP_HEIGHT: f64 = 520.0;
 const PROFILE_HEIGHT: f64 = 130.0;
 const GAP: f64 = 72.0;
-/// Between two arrows along the path.
-const ARROW_EVERY: f64 = 90.0;
 
 const INK: &str = "#22303c";
 const FAINT: &str = "#8a949c";
 const PATH: &str = "#a3123f";
-
-/// Least and greatest; (0, 0) of nothing.
-pub(crate) fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (low, high) = values
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
-    if low <= high { (low, high) } else { (0.0, 0.0) }
-}
-
-/// Steps of 1, 2 or 5 that cut a range into about `pieces`.
-pub(crate) fn step(range: f64, pieces: f64) -> f64 {
-    let raw = (range / pieces).max(f64::MIN_POSITIVE);
-    let power = 10f64.powf(raw.log10().floor());
-    let lead = raw / power;
-    power
-        * if lead < 1.5 {
-            1.0
-        } else if lead < 3.5 {
-            2.0
-        } else if lead < 7.5 {
-            5.0
-        } else {
-            10.0
-        }
-}
-
-/// Multiples of a step within a range.
-pub(crate) fn multiples((low, high): (f64, f64), step: f64) -> Vec<f64> {
-    let mut all = Vec::new();
-    let mut count = (low / step).ceil();
-    while count * step <= high + 1e-9 * step {
-        all.push(count * step);
-        count += 1.0;
-    }
-    all
-}
-
-/// From metres to the picture.
-struct Frame {
-    east_m: (f64, f64),
-    north_m: (f64, f64),
-    scale: f64,
-}
-
-impl Frame {
-    /// All of it, on one scale for both axes.
-    fn around(relief: &Relief) -> Self {
-        let path = |axis: usize| ends(relief.path_m.iter().map(|point| point[axis]));
-        let (east_m, north_m) = if let Some(ground) = &relief.ground {
-            let end = |axis: usize, count: usize| {
-                ground.corner_m[axis] + ground.cell_m[axis] * count.saturating_sub(1) as f64
-            };
-            ((ground.corner_m[0], end(0, ground.columns)), (ground.corner_m[1], end(1, ground.rows())))
-        } else {
-            let margin = |(low, high): (f64, f64), least: f64| {
-                let more = 0.04 * (high - low) + least;
-                (low - more, high + more)
-            };
-            let (east, north) = (path(0), path(1));
-            let least = 0.02 * (east.1 - east.0).max(north.1 - north.0).max(1.0);
-            (margin(east, least), margin(north, least))
-        };
-        let (wide, high) = ((east_m.1 - east_m.0).max(1e-9), (north_m.1 - north_m.0).max(1e-9));
-        Self { east_m, north_m, scale: (MAP_WIDTH / wide).min(MAP_HEIGHT / high) }
-    }
-
-    fn width(&self) -> f64 {
-        self.scale * (self.east_m.1 - self.east_m.0)
-    }
-
-    fn height(&self) -> f64 {
-        self.scale * (self.north_m.1 - self.north_m.0)
-    }
-
-    fn x(&self, east_m: f64) -> f64 {
-        LEFT + self.scale * (east_m - self.east_m.0)
-    }
-
-    fn y(&self, north_m: f64) -> f64 {
-        TOP + self.scale * (self.north_m.1 - north_m)
-    }
-
-    /// Ticks along both sides, in metres.
-    fn axes(&self, svg: &mut String) {
-        let every = step(self.east_m.1 - self.east_m.0, 7.0).max(step(self.north_m.1 - self.north_m.0, 7.0));
-        let (left, bottom) = (LEFT, TOP + self.height());
-        for at in multiples(self.east_m, every) {
-            let x = self.x(at);
-            let _ = write!(svg, "<path d=\"M{x:.1} {bottom:.1}v5\" stroke=\"{INK}\"/>");
-            text(svg, x, bottom + 19.0, "middle", &tick(at, every));
-        }
-        for at in multiples(self.north_m, every) {
-            let y = self.y(at);
-            let _ = write!(svg, "<path d=\"M{left:.1} {y:.1}h-5\" stroke=\"{INK}\"/>");
-            text(svg, left - 9.0, y + 4.0, "end", &tick(at, every));
-        }
-        let _ = write!(
-            svg,
-            "<rect x=\"{left:.1}\" y=\"{TOP:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"none\" stroke=\"{INK}\"/>",
-            self.width(),
-            self.height()
-        );
-    }
-}
-
-pub(crate) fn text(svg: &mut String, x: f64, y: f64, anchor: &str, words: &str) {
-    let _ = write!(svg, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{}</text>", escape(words));
-}
-
-/// A line through points of the picture.
-pub(crate) fn polyline(points: impl Iterator<Item = [f64; 2]>) -> String {
-    let mut d = String::new();
-    for [x, y] in points {
-        let _ = write!(d, "{}{x:.1} {y:.1}", if d.is_empty() { "M" } else { "L" });
-    }
-    d
-}
 
 impl Relief {
     /// The picture.
@@ -274,51 +162,6 @@ fn draw_ground(svg: &mut String, frame: &Frame, ground: &Ground) {
     );
 }
 
-/// Between two contours; level ground has none.
-fn contour_step(range: (f64, f64)) -> f64 {
-    if range.1 - range.0 > 1e-6 { step(range.1 - range.0, 10.0) } else { f64::INFINITY }
-}
-
-/// A number at a tick, with as many digits as the step between ticks needs.
-pub(crate) fn tick(at: f64, step: f64) -> String {
-    let decimals = (-step.log10().floor()).clamp(0.0, 9.0);
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 9")]
-    let text = format!("{:.*}", decimals as usize, at + 0.0);
-    text.replace('-', "\u{2212}")
-}
-
-/// Leaves out points that cannot be told from the last one in the picture.
-pub(crate) fn thinned(points: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
-    const APART: f64 = 1.0;
-    let mut kept: Vec<[f64; 2]> = Vec::new();
-    let mut end = None;
-    for point in points {
-        let far = |last: &[f64; 2]| (point[0] - last[0]).hypot(point[1] - last[1]) >= APART;
-        end = Some(point);
-        if kept.last().is_none_or(far) {
-            kept.push(point);
-            end = None;
-        }
-    }
-    kept.extend(end);
-    kept
-}
-
-/// Where arrows stand, and where they point.
-fn arrows(points: &[[f64; 2]]) -> Vec<([f64; 2], [f64; 2])> {
-    let mut all = Vec::new();
-    let mut since = 0.5 * ARROW_EVERY;
-    for [one, two] in points.array_windows() {
-        let way = [two[0] - one[0], two[1] - one[1]];
-        since += way[0].hypot(way[1]);
-        if since >= ARROW_EVERY {
-            since = 0.0;
-            all.push((*two, way));
-        }
-    }
-    all
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -355,21 +198,5 @@ mod tests {
     fn without_ground_the_path_stands_alone() {
         let svg = Relief { ground: None, ..relief() }.svg();
         assert!(!svg.contains("<image") && svg.contains("metres east"));
-    }
-
-    #[test]
-    fn points_on_top_of_each_other_are_drawn_once_and_the_last_one_always() {
-        let points = [[0.0, 0.0], [0.2, 0.0], [1.5, 0.0], [1.6, 0.0]];
-        assert_eq!(thinned(points.into_iter()), [[0.0, 0.0], [1.5, 0.0], [1.6, 0.0]]);
-    }
-
-    #[test]
-    fn steps_are_round() {
-        for (range, wanted) in [(10.0, 1.0), (16.0, 2.0), (44.0, 5.0), (0.9, 0.1), (80.0, 10.0)] {
-            assert!((step(range, 10.0) / wanted - 1.0).abs() < 1e-12, "{range}");
-        }
-        assert_eq!(multiples((0.3, 1.0), 0.25), [0.5, 0.75, 1.0]);
-        assert_eq!(tick(-0.0, 20.0), "0");
-        assert_eq!((tick(306.31, 0.02), tick(-40.0, 20.0)), ("306.31".to_owned(), "\u{2212}40".to_owned()));
     }
 }

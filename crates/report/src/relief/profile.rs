@@ -1,8 +1,8 @@
 //! Height along the path, below the map.
 
-use super::{
-    FAINT, INK, LEFT, MAP_WIDTH, PATH, PROFILE_HEIGHT, ends, multiples, polyline, step, text, thinned, tick,
-};
+use super::line::{polyline, text, thinned};
+use super::scale::{ends, multiples, step, tick};
+use super::{FAINT, INK, LEFT, MAP_WIDTH, PATH, PROFILE_HEIGHT};
 use std::fmt::Write;
 
 /// Draws it from `top` on.

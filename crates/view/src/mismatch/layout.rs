@@ -65,7 +65,7 @@ fn flat(
 fn painted(layout: &mut Layout, diagnosis: &Diagnosis, plan: &Plan) -> Result<Node, ViewError> {
     let mut views = Vec::with_capacity(2);
     for stage in Stage::BOTH {
-        let contents = [stage.name(), "here", "names", "legend"].map(entity::painted_parts);
+        let contents = [stage.name(), "here", "legend"].map(entity::painted_parts);
         let title = format!("Mismatch along the path, {} [{}]", stage.name(), diagnosis.unit);
         views.push(flat(layout, &title, &contents, plan.view())?);
     }

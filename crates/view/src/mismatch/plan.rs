@@ -17,13 +17,17 @@ const PIECES: usize = 500;
 /// Runs lie beside one another by this share of the plan's size, all of them within `ALL`.
 const GAP: f64 = 0.02;
 const ALL: f64 = 0.24;
+/// All lanes of runs that know no places, beside one another, as a share of the longest.
+const LANES: f64 = 0.1;
+/// A plan is wide if it is so many times wider than high: before stands above after, and there is little room below.
+const WIDE: f64 = 2.0;
+/// Margins of a wide plan over those of others.
+const LOW: f64 = 0.35;
 /// Thickness of a line: where nothing is left over, and what the limit adds, as half widths in points of the screen.
 const THIN: f64 = 1.5;
 const THICK: f64 = 2.5;
 /// What is written: light on dark.
 const WORDS: Colour = [225, 225, 225];
-/// Runs that are named; more names would hide one another.
-const NAMED: usize = 12;
 
 /// The plan of all runs.
 #[derive(Debug)]
@@ -55,7 +59,7 @@ impl Plan {
         };
         let count = lines.len() as f64;
         let gap_m =
-            if placed.is_some() { (GAP * size_m).min(ALL * size_m / count) } else { size_m / count.max(8.0) };
+            if placed.is_some() { (GAP * size_m).min(ALL * size_m / count) } else { LANES * size_m / count };
         for (index, line) in lines.iter_mut().enumerate() {
             match placed.as_ref().map(|poses| &poses[index]) {
                 Some(poses) => {
@@ -79,10 +83,15 @@ impl Plan {
         (right - left).max(bottom - top).max(1.0)
     }
 
-    /// Whether it is wider than high.
+    /// Whether it is wide and low.
     pub(crate) fn wide(&self) -> bool {
         let [left, top, right, bottom] = self.bounds;
-        right - left > bottom - top
+        right - left > WIDE * (bottom - top)
+    }
+
+    /// A length above or below the runs.
+    fn margin_m(&self, share: f64) -> f64 {
+        share * self.size_m() * if self.wide() { LOW } else { 1.0 }
     }
 
     /// What a view has to show: everything, with room for names and the legend.
@@ -92,10 +101,10 @@ impl Plan {
         // The legend is as wide as the longer side.
         let half_m = (0.5 * (right - left) + 0.06 * size_m).max(0.55 * size_m);
         let middle = f64::midpoint(left, right);
-        [middle - half_m, top - 0.06 * size_m, middle + half_m, bottom + 0.2 * size_m]
+        [middle - half_m, top - self.margin_m(0.06), middle + half_m, bottom + self.margin_m(0.2)]
     }
 
-    /// Draws the lines of both stages, their names, the legend, and where each run is as time passes.
+    /// Draws the lines of both stages, the legend, and where each run is as time passes.
     pub(crate) fn draw(&self, to: &Recorder, diagnosis: &Diagnosis, scale: Scale) -> Result<(), ViewError> {
         for (left, line) in diagnosis.left.iter().zip(&self.lines) {
             for stage in Stage::BOTH {
@@ -103,7 +112,7 @@ impl Plan {
             }
             let here = entity::painted("here", &left.run.id);
             let look = Points2D::update_fields()
-                .with_radii([Radius::new_ui_points(5.0)])
+                .with_radii([Radius::new_ui_points(4.0)])
                 .with_colors([colour(WORDS)]);
             to.fixed(&here, &look)?;
             let rows: Vec<usize> = finite(line);
@@ -116,22 +125,6 @@ impl Plan {
                 Points2D::update_fields().with_positions(places).columns_of_unit_batches(),
             )?;
         }
-        let named = diagnosis.left.len() <= NAMED;
-        let starts: Vec<(Place, String)> = diagnosis
-            .left
-            .iter()
-            .zip(&self.lines)
-            .filter(|(left, _)| named || left.held_out)
-            .filter_map(|(left, line)| Some((line[*finite(line).first()?], name(left))))
-            .collect();
-        if !self.located {
-            let labels = Points2D::new(starts.iter().map(|(at, _)| single(*at)))
-                .with_radii([Radius::new_ui_points(1.0)])
-                .with_colors([colour(WORDS)])
-                .with_labels(starts.into_iter().map(|(_, name)| name))
-                .with_show_labels(true);
-            to.fixed(&entity::painted("names", "all"), &labels)?;
-        }
         self.legend(to, diagnosis.unit, scale)
     }
 
@@ -141,7 +134,7 @@ impl Plan {
         let [left, _, right, bottom] = self.bounds;
         let size_m = self.size_m();
         let middle = f64::midpoint(left, right);
-        let (from, width, at) = (middle - 0.45 * size_m, 0.5 * size_m, bottom + 0.1 * size_m);
+        let (from, width, at) = (middle - 0.45 * size_m, 0.5 * size_m, bottom + self.margin_m(0.1));
         let value = |step: usize| scale.limit * (2.0 * (step as f64 + 0.5) / STEPS as f64 - 1.0);
         let along = |step: usize| from + width * step as f64 / STEPS as f64;
         let bar =
@@ -280,6 +273,6 @@ mod tests {
         let one = run("r1", &[("position_m", &AT_M)]);
         let plan = Plan::of(&[left(&one, false), left(&one, false)]);
         assert!(!plan.located && plan.wide());
-        assert_eq!(plan.lines[1], [[0.0, 12.5], [50.0, 12.5], [100.0, 12.5]]);
+        assert_eq!(plan.lines[1], [[0.0, 5.0], [50.0, 5.0], [100.0, 5.0]]);
     }
 }

@@ -111,6 +111,7 @@ impl Kind {
 }
 
 /// The rows of all balances of all runs, those held out among them.
+#[derive(Clone)]
 pub struct System {
     /// The balances, from the ground up; a chunk says to which it belongs.
     pub kinds: Vec<Kind>,

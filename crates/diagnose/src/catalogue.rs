@@ -444,7 +444,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
         cause(
             "soft_ground",
             MOTION,
-            vec![linear("coefficient", "1", 0.02)],
+            vec![linear("coefficient", "1", 0.02).within(-around.coefficient, MOST_SIZES * 0.02)],
             "F = Δc(x) N",
             &["position_m"],
             "softer ground along the path",

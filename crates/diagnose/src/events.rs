@@ -6,6 +6,8 @@
 
 use crate::Case;
 use crate::balance::{Kind, System};
+use crate::gram::Column;
+use crate::noise::Noises;
 use crate::recorded::Recorded;
 use crate::rows::{Chunk, Row};
 use crate::search::Found;
@@ -46,48 +48,135 @@ const MOST_OF_A_RUN: f64 = 0.5;
 /// A braked vehicle slows down at least like this [m/s²].
 pub const BRAKED_M_S2: f64 = -0.25;
 
-/// The spells of the motion balance, where there are some.
-pub fn events(case: &Case, system: &System, found: &Found) -> Vec<Event> {
-    let Some(whiteners) = found.noises.1.whiteners(&system.chunks) else { return Vec::new() };
-    let of_chunk = |index: usize| -> Vec<Event> {
+/// A stretch of rows of a chunk with the force that explains most of what is left there.
+#[derive(Clone, Debug)]
+pub struct Spot {
+    /// Number of the chunk.
+    pub chunk: usize,
+    /// First row and the one behind the last.
+    pub rows: (usize, usize),
+    /// As it stands in its run.
+    pub event: Event,
+}
+
+/// Which stretches are looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stretches {
+    /// Of some lengths.
+    Some,
+    /// Of every length, longer ones in steps of a thirtieth, each moved to where it fits best beside the others.
+    Every,
+}
+
+/// The stretches of the motion balance that stand out from a noise.
+pub fn spots(
+    case: &Case,
+    system: &System,
+    left: &Column,
+    noises: &Noises,
+    stretches: Stretches,
+) -> Vec<Spot> {
+    let Some(whiteners) = noises.whiteners(&system.chunks) else { return Vec::new() };
+    let of_chunk = |index: usize| -> Vec<Spot> {
         let chunk = &system.chunks[index];
         if system.kind(chunk) != Kind::Motion {
             return Vec::new();
         }
         let whiten = |rows: &DVector<f64>| whiteners.white(index, chunk, rows);
-        let boxes = Box::all(chunk, &whiten);
-        let mut left = whiten(&found.left[index]);
-        let mut all = Vec::new();
-        for _ in 0..MOST {
-            let judged = boxes.iter().filter_map(|one| {
-                let product = one.white.dot(&left);
-                (product > 0.0).then(|| (0.5 * product * product / one.square, product / one.square, one))
-            });
-            let best = judged.max_by(|one, other| one.0.total_cmp(&other.0));
-            let Some((gain, force_n, one)) = best.filter(|(gain, ..)| *gain > LEAST_GAIN) else { break };
-            left -= &one.white * force_n;
-            all.push(one.event(&case.runs[chunk.run], chunk, force_n, gain));
+        let boxes = Box::all(chunk, stretches, &whiten);
+        let mut filter = Filter { boxes: &boxes, left: whiten(&left[index]), taken: Vec::new() };
+        filter.take();
+        if stretches == Stretches::Every {
+            filter.shift();
         }
-        all
+        let run = &case.runs[chunk.run];
+        let told = filter.taken.iter().map(|taken| Spot {
+            chunk: index,
+            rows: (taken.of.from, taken.of.from + taken.of.length),
+            event: taken.of.event(run, chunk, taken.force_n, taken.gain),
+        });
+        told.collect()
     };
-    let mut all: Vec<Event> = (0..system.chunks.len()).into_par_iter().flat_map_iter(of_chunk).collect();
-    all.sort_by(|one, other| one.run.cmp(&other.run).then(one.from_s.total_cmp(&other.from_s)));
-    let weight_n = |event: &Event| {
-        let said = &case.nominal[event.run];
-        said.effective_mass_kg.iter().find(|mass| mass.is_finite()).copied().unwrap_or(0.0)
-            * STANDARD_GRAVITY_M_S2
-    };
+    (0..system.chunks.len()).into_par_iter().flat_map_iter(of_chunk).collect()
+}
+
+/// The spells of the motion balance that are more than models of vehicles leave over, where there are some.
+pub fn events(case: &Case, system: &System, found: &Found) -> Vec<Event> {
+    let all = joined(spots(case, system, &found.left, &found.noises.1, Stretches::Some));
     let strong: Vec<Event> =
-        joined(all).into_iter().filter(|event| event.force_n > WEAKEST * weight_n(event)).collect();
+        all.into_iter().filter(|event| event.force_n > WEAKEST * weight_n(case, event.run)).collect();
+    within_runs(case, &strong)
+}
+
+/// Weight of the vehicle in a run, nominally.
+pub fn weight_n(case: &Case, run: usize) -> f64 {
+    let masses = &case.nominal[run].effective_mass_kg;
+    masses.iter().find(|mass| mass.is_finite()).copied().unwrap_or(0.0) * STANDARD_GRAVITY_M_S2
+}
+
+/// Of spells those that lie well within their run and do not cover most of it.
+pub fn within_runs(case: &Case, events: &[Event]) -> Vec<Event> {
     let spell = |event: &&Event| {
         let time_s = case.runs[event.run].measured.trace.time_s();
         let (first_s, last_s) = (time_s[0], time_s[time_s.len() - 1]);
         let at_an_edge = event.from_s < first_s + EDGE_S || event.to_s > last_s - EDGE_S;
-        let own = strong.iter().filter(|other| other.run == event.run);
+        let own = events.iter().filter(|other| other.run == event.run);
         let covered_s: f64 = own.map(|other| other.to_s - other.from_s).sum();
         !(at_an_edge && event.to_s - event.from_s < SHORT_S) && covered_s < MOST_OF_A_RUN * (last_s - first_s)
     };
-    strong.iter().filter(spell).cloned().collect()
+    events.iter().filter(spell).cloned().collect()
+}
+
+/// The filter of one chunk.
+struct Filter<'a> {
+    boxes: &'a [Box],
+    /// What is left, whitened, without what was taken.
+    left: DVector<f64>,
+    taken: Vec<Taken<'a>>,
+}
+
+/// A stretch with the force that it takes.
+struct Taken<'a> {
+    of: &'a Box,
+    force_n: f64,
+    gain: f64,
+}
+
+impl<'a> Filter<'a> {
+    /// The stretch that explains most of what is left, among some.
+    fn best(&self, among: impl Fn(&Box) -> bool) -> Option<Taken<'a>> {
+        let judged = self.boxes.iter().filter(|one| among(one)).filter_map(|of| {
+            let product = of.white.dot(&self.left);
+            let taken = Taken { of, force_n: product / of.square, gain: 0.5 * product * product / of.square };
+            (product > 0.0).then_some(taken)
+        });
+        judged.max_by(|one, other| one.gain.total_cmp(&other.gain)).filter(|best| best.gain > LEAST_GAIN)
+    }
+
+    /// Takes one stretch after the other, the best first.
+    fn take(&mut self) {
+        while self.taken.len() < MOST {
+            let Some(best) = self.best(|_| true) else { break };
+            self.left -= &best.of.white * best.force_n;
+            self.taken.push(best);
+        }
+    }
+
+    /// Moves every stretch to where it explains most beside the others: what was taken first had to do for all.
+    fn shift(&mut self) {
+        const ROUNDS: usize = 3;
+        for _ in 0..ROUNDS {
+            for place in (0..self.taken.len()).rev() {
+                let own = self.taken.remove(place);
+                self.left += &own.of.white * own.force_n;
+                if let Some(best) = self.best(|other| own.of.meets(other)) {
+                    self.left -= &best.of.white * best.force_n;
+                    self.taken.insert(place, best);
+                }
+            }
+            self.take();
+        }
+    }
 }
 
 /// A stretch of rows with a force of one.
@@ -101,10 +190,19 @@ struct Box {
 
 impl Box {
     /// Every stretch of a chunk.
-    fn all(chunk: &Chunk, whiten: &dyn Fn(&DVector<f64>) -> DVector<f64>) -> Vec<Self> {
+    fn all(chunk: &Chunk, stretches: Stretches, whiten: &dyn Fn(&DVector<f64>) -> DVector<f64>) -> Vec<Self> {
         let rows = chunk.rows.len();
-        let lengths = LENGTHS.into_iter().filter(|length| 2 * length <= rows);
-        let places = lengths.flat_map(|length| (0..=rows - length).map(move |from| (from, length)));
+        let lengths: Vec<usize> = match stretches {
+            Stretches::Some => LENGTHS.into_iter().filter(|length| 2 * length <= rows).collect(),
+            Stretches::Every => {
+                let next = |length: &usize| Some(length + (length / 30).max(1));
+                std::iter::successors(Some(LENGTHS[0]), next)
+                    .take_while(|length| 2 * length <= rows)
+                    .collect()
+            }
+        };
+        let places =
+            lengths.into_iter().flat_map(|length| (0..=rows - length).map(move |from| (from, length)));
         places
             .map(|(from, length)| {
                 let inside = |row: usize| f64::from((from..from + length).contains(&row));
@@ -112,6 +210,11 @@ impl Box {
                 Self { from, length, square: white.norm_squared(), white }
             })
             .collect()
+    }
+
+    /// Whether two share a row.
+    fn meets(&self, other: &Self) -> bool {
+        self.from < other.from + other.length && other.from < self.from + self.length
     }
 
     fn event(&self, run: &Recorded, chunk: &Chunk, force_n: f64, gain: f64) -> Event {
@@ -130,7 +233,9 @@ impl Box {
 }
 
 /// Spells that overlap or touch are one, with the force of their means.
-fn joined(all: Vec<Event>) -> Vec<Event> {
+pub fn joined(spots: Vec<Spot>) -> Vec<Event> {
+    let mut all: Vec<Event> = spots.into_iter().map(|spot| spot.event).collect();
+    all.sort_by(|one, other| one.run.cmp(&other.run).then(one.from_s.total_cmp(&other.from_s)));
     let mut joined: Vec<Event> = Vec::new();
     for event in all {
         match joined.last_mut() {
@@ -161,20 +266,34 @@ pub fn outside(runs: &[Recorded], events: &[Event], margin_s: f64) -> Vec<Vec<bo
         .collect()
 }
 
-/// What spells are called: brakes where the vehicle slows down without being driven, a pull at the hitch otherwise.
-pub fn name(runs: &[Recorded], events: &[Event]) -> &'static str {
-    let braked = |event: &&Event| {
-        let drive = &runs[event.run];
-        let time_s = drive.measured.trace.time_s();
-        let within: Vec<usize> =
-            (0..time_s.len()).filter(|index| (event.from_s..=event.to_s).contains(&time_s[*index])).collect();
-        let mean = |of: &dyn Fn(usize) -> f64| {
-            within.iter().map(|index| of(*index)).sum::<f64>() / within.len().max(1) as f64
-        };
-        let slowing = mean(&|index| drive.motion.slope[index]) < BRAKED_M_S2;
-        let driven = drive.force_n.as_ref().map_or(0.0, |force| mean(&|index| force[index]));
-        slowing && driven < 0.25 * event.force_n
+/// What a spell is called: brakes where the vehicle slows down without being driven, a pull at the hitch otherwise.
+fn name(runs: &[Recorded], event: &Event) -> &'static str {
+    let drive = &runs[event.run];
+    let time_s = drive.measured.trace.time_s();
+    let within: Vec<usize> =
+        (0..time_s.len()).filter(|index| (event.from_s..=event.to_s).contains(&time_s[*index])).collect();
+    let mean = |of: &dyn Fn(usize) -> f64| {
+        within.iter().map(|index| of(*index)).sum::<f64>() / within.len().max(1) as f64
     };
-    let count = events.iter().filter(braked).count();
-    if 2 * count >= events.len() { "braking" } else { "drawbar_load" }
+    let slowing = mean(&|index| drive.motion.slope[index]) < BRAKED_M_S2;
+    let driven = drive.force_n.as_ref().map_or(0.0, |force| mean(&|index| force[index]));
+    if slowing && driven < 0.25 * event.force_n { "braking" } else { "drawbar_load" }
+}
+
+/// Spells by what they are called. Few of the one kind among many of the other are of the same kind.
+pub fn named(runs: &[Recorded], events: &[Event]) -> Vec<(&'static str, Vec<Event>)> {
+    /// Fewer than this share are few.
+    const FEW: f64 = 0.25;
+    let (braked, pulled): (Vec<Event>, Vec<Event>) =
+        events.iter().cloned().partition(|event| name(runs, event) == "braking");
+    let few = |one: &[Event]| (one.len() as f64) < FEW * events.len() as f64;
+    if events.is_empty() {
+        Vec::new()
+    } else if few(&pulled) {
+        vec![("braking", events.to_vec())]
+    } else if few(&braked) {
+        vec![("drawbar_load", events.to_vec())]
+    } else {
+        vec![("braking", braked), ("drawbar_load", pulled)]
+    }
 }

@@ -42,6 +42,7 @@ mod search;
 mod sensors;
 mod sharpen;
 mod so_far;
+mod spells;
 mod standin;
 mod state;
 mod straying;
@@ -91,58 +92,17 @@ pub fn diagnose(
         return report::inconclusive(&case, &sound, &against);
     }
     let braked = if case.wanted("braking") { brakes::brakes(&case, &sound) } else { Vec::new() };
-    let sound = without(&case, &sound, &braked);
+    let sound = spells::outside(&case, &sound, &braked);
     let mut look = Look::at(&case, &sound)?;
     look.sensors_first(&mut case)?;
     look.sharpen(&case)?;
-    let events = spells(&mut case, &mut look, &sound, &braked)?;
+    let events = spells::spells(&mut case, &mut look, &sound, &braked)?;
     let (system, mut pool, found) = look.closer(&mut case)?;
     let found = unlisted::unlisted(&mut case, &system, &mut pool, found)?;
-    let proven = withdraw::proven(&case, &system, &mut pool, found, &events)?;
+    let proven = withdraw::proven(&case, &system, &mut pool, found, &events, &faults)?;
     let withdraw::Proven { found, mut refined, withheld, proof } = proven;
     let next = experiment::propose(&case, &system, &pool, &found, &refined)?;
     refined.null_space.clone_from(&next.null_space);
     let beside = report::Beside { faults: &faults, events: &events, withheld, next };
     report::report(&case, &system, &found, &refined, &proof, &beside)
-}
-
-/// The samples that are usable and lie in no spell.
-fn without(case: &Case, usable: &[Vec<bool>], events: &[events::Event]) -> Vec<Vec<bool>> {
-    let mut outside =
-        events::outside(&case.runs, events, balance::block_s(Kind::Motion, &case.runs, case.rows));
-    for (outside, usable) in outside.iter_mut().zip(usable) {
-        for (outside, usable) in outside.iter_mut().zip(usable) {
-            *outside &= usable;
-        }
-    }
-    outside
-}
-
-/// Spells in single runs are set aside, and what every run has in common is looked for once more without them.
-fn spells(
-    case: &mut Case,
-    look: &mut Look,
-    sound: &[Vec<bool>],
-    braked: &[events::Event],
-) -> Result<Vec<events::Event>, DiagnoseError> {
-    // A function of time can imitate spells; it is looked at without.
-    let timed = |one: &search::Accepted| {
-        let cause = &case.causes[one.trial.cause];
-        cause.id == "payload_change" && cause.is_function()
-    };
-    let mut events = if look.found.accepted.iter().any(timed) {
-        let plain = search::search_without(case, &look.system, &look.pool, &["payload_change"]);
-        events::events(case, &look.system, plain.as_ref().unwrap_or(&look.found))
-    } else {
-        events::events(case, &look.system, &look.found)
-    };
-    if events.is_empty() || !case.wanted(events::name(&case.runs, &events)) {
-        return Ok(braked.to_vec());
-    }
-    let usable = without(case, sound, &events);
-    look.again(case, &usable)?;
-    look.sharpen(case)?;
-    events.extend_from_slice(braked);
-    events.sort_by(|one, other| one.run.cmp(&other.run).then(one.from_s.total_cmp(&other.from_s)));
-    Ok(events)
 }

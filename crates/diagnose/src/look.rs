@@ -190,7 +190,7 @@ impl State<'_> {
             let reduced = self.reduced(&best.noises, &best.parts)?;
             needed = LEAST_GAIN.max(self.chance(&best, &reduced));
             let able = |one: &Contest| {
-                self.growth(one, &best) >= needed.max(PER_CAUSE) && worth(&one.stand) > worth(&best)
+                one.stand.score - best.score >= needed.max(PER_CAUSE) && worth(&one.stand) > worth(&best)
             };
             let judged = self.contest(&best, &reduced, &[]).into_iter();
             let next = judged.filter(able).find(|one| self.sensible(&one.stand));

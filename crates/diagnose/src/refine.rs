@@ -1,7 +1,7 @@
 //! The accepted causes fitted once more without linearising, together with the free parameters.
 
 use crate::catalogue::{Cause, Class, Form, Term, spell};
-use crate::events::{Event, LEAST_GAIN, name};
+use crate::events::{Event, LEAST_GAIN, named};
 use crate::gram::Column;
 use crate::profile::Function;
 use crate::recorded::Recorded;
@@ -199,23 +199,26 @@ fn linear(case: &Case, pool: &Pool, found: &Found, widths: &[Widths]) -> Refined
     Refined { causes, free: free.collect(), null_space: Vec::new() }
 }
 
-/// Adds spells in single runs as one cause.
+/// Adds spells in single runs, those of each name as one cause.
 pub fn spells(case: &Case, system: &System, events: &[Event], refined: &mut Refined) {
     let motion = system.kinds.iter().position(|kind| *kind == crate::Kind::Motion);
-    let (Some(balance), Some(strongest)) = (motion, events.iter().map(|event| event.gain).reduce(f64::max))
-    else {
-        return;
-    };
+    let Some(balance) = motion else { return };
+    let cured = named(&case.runs, events).into_iter().map(|(id, events)| spelt(id, events, balance));
+    refined.causes.extend(cured);
+}
+
+/// Spells of one name as a cause.
+fn spelt(id: &'static str, events: Vec<Event>, balance: usize) -> Cured {
     let longest = |event: &Event| event.to_s - event.from_s;
     let whole: f64 = events.iter().map(longest).sum();
     let mean = events.iter().map(|event| event.force_n * longest(event)).sum::<f64>() / whole.max(1e-9);
     let sd = events.iter().map(|event| event.sd_n).fold(0.0, f64::max);
     let trial = Trial { cause: 0, shape: Vec::new(), columns: Vec::new(), terms: Vec::new() };
-    refined.causes.push(Cured {
-        cause: spell(name(&case.runs, events)),
+    Cured {
+        cause: spell(id),
         accepted: Accepted {
             trial,
-            gain: strongest,
+            gain: events.iter().map(|event| event.gain).fold(0.0, f64::max),
             by_chance: LEAST_GAIN,
             rivals: Vec::new(),
             function: None,
@@ -223,8 +226,8 @@ pub fn spells(case: &Case, system: &System, events: &[Event], refined: &mut Refi
             balance,
         },
         values: vec![(mean, [mean - HALF_95 * sd, mean + HALF_95 * sd])],
-        events: events.to_vec(),
-    });
+        events,
+    }
 }
 
 /// A parameter of a new cause: which cause, which term.

@@ -54,6 +54,7 @@ pub struct Round {
 }
 
 /// What was found.
+#[derive(Clone)]
 pub struct Found {
     /// What was tried, round after round.
     pub tried: Vec<Round>,
@@ -87,10 +88,8 @@ pub const MOST_CAUSES: usize = 3;
 const BEAM: usize = 6;
 /// Each cause more makes a set less likely from the start: odds of one to twenty.
 pub const PER_CAUSE: f64 = 3.0;
-/// A function of time is shown by no other run: it takes so much more.
-const NO_OTHER_RUN: f64 = 20.0;
 /// A growth of ln p within this of the best one does not tell the two apart: odds of one to twenty.
-const TOLERANCE: f64 = 3.0;
+pub const TOLERANCE: f64 = 3.0;
 /// No growth below this counts, whatever chance can do: odds of a thousand to one, because no model of a vehicle is exact and
 /// chance is only that of its noise.
 pub const LEAST_GAIN: f64 = 7.0;
@@ -133,7 +132,7 @@ pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]
                     causes: judged.iter().map(|one| one.told(stand.score)).collect(),
                 });
             }
-            let able = judged.into_iter().filter(|one| state.growth(one, stand) >= needed);
+            let able = judged.into_iter().filter(|one| one.stand.score - stand.score >= needed);
             grown.extend(able.map(|one| one.stand).filter(|stand| state.sensible(stand)).take(BEAM));
         }
         grown.sort_by(|one, other| other.score.total_cmp(&one.score));
@@ -210,7 +209,7 @@ impl State<'_> {
     }
 
     /// Other sets that are as good: what they hold otherwise stands beside the cause that it is most like.
-    fn sets_as_good(&self, found: &mut Found, others: &[Stand]) {
+    pub fn sets_as_good(&self, found: &mut Found, others: &[Stand]) {
         let best = worth(&found.stand);
         let Some(reduced) = self.reduced(&found.stand.noises, &[]) else { return };
         let nuisance: Vec<usize> = (0..self.pool.nuisance).collect();
@@ -272,19 +271,6 @@ impl State<'_> {
             out.push(parts.remove(worst).trial.cause);
             best = self.settle(&parts, &best.noises)?;
         }
-    }
-
-    /// Whether a part is a function of time, or works in one run alone.
-    pub fn timed(&self, part: &Part) -> bool {
-        let cause = self.cause(&part.trial);
-        cause.run.is_some() || part.spread.is_some() && cause.form == Form::OverTime
-    }
-
-    /// What one cause more brings to a set: growth of ln p, less what a function of time has to bring because no other run
-    /// shows it.
-    pub fn growth(&self, one: &Contest, stand: &Stand) -> f64 {
-        let timed = one.stand.parts.last().is_some_and(|part| self.timed(part));
-        one.stand.score - stand.score - if timed { NO_OTHER_RUN } else { 0.0 }
     }
 
     /// Whether any two fitted runs drove the same path.

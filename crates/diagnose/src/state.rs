@@ -2,7 +2,7 @@
 
 use crate::Case;
 use crate::balance::System;
-use crate::catalogue::Cause;
+use crate::catalogue::{Cause, Form};
 use crate::gram::{Column, Estimate, Reduced, Whitened};
 use crate::noise::Noises;
 use crate::profile::{Function, Profile, Spread, Widths};
@@ -159,9 +159,19 @@ impl<'a> State<'a> {
         })
     }
 
-    /// Cost of the choice of these causes.
+    /// Whether a part is a function of time, or works in one run alone.
+    pub fn timed(&self, part: &Part) -> bool {
+        let cause = self.cause(&part.trial);
+        cause.run.is_some() || part.spread.is_some() && cause.form == Form::OverTime
+    }
+
+    /// Cost of the choice of these causes, and of what no other run shows.
     pub fn choices(&self, parts: &[Part]) -> f64 {
-        parts.iter().map(|part| choice(self.cause(&part.trial))).sum()
+        /// A function of time is shown by no other run: it takes so much more.
+        const NO_OTHER_RUN: f64 = 20.0;
+        let cost =
+            |part: &Part| choice(self.cause(&part.trial)) + if self.timed(part) { NO_OTHER_RUN } else { 0.0 };
+        parts.iter().map(cost).sum()
     }
 
     /// All columns and the residual, multiplied at a noise, with the functions of a set eliminated.

@@ -44,7 +44,7 @@ impl State<'_> {
         for _ in 0..MOST_CAUSES {
             let reduced = self.reduced(&best.noises, &best.parts)?;
             let needed = PER_CAUSE + LEAST_GAIN.max(self.chance(&best, &reduced));
-            let able = |one: &Contest| self.growth(one, &best) >= needed && self.sensible(&one.stand);
+            let able = |one: &Contest| one.stand.score - best.score >= needed && self.sensible(&one.stand);
             let Some(next) = self.contest(&best, &reduced, &[]).into_iter().find(able) else { break };
             best = next.stand;
         }

@@ -11,7 +11,7 @@ use crate::sensors::{fault, small_faults};
 use crate::{Case, DiagnoseError};
 
 /// The regressors.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Pool {
     /// The columns: free parameters first, then small faults of sensors, then the trials'.
     pub columns: Vec<Column>,

@@ -6,9 +6,9 @@ use crate::balance::Kind;
 use crate::catalogue::{Cause, Class, Form, LawText};
 use crate::look::MANY_ROWS;
 use crate::noise::{Noises, Whiteners};
-use crate::search::{Found, MOST_CAUSES, concluded, worth};
+use crate::search::{Found, MOST_CAUSES, TOLERANCE, concluded, worth};
 use crate::state::{Part, Stand, State};
-use crate::trial::{Pool, Trial};
+use crate::trial::{Pool, Trial, effect};
 use crate::{Case, DiagnoseError, System};
 use headland_calibrate::statistics::median;
 use headland_symbolic::{Law, Nuisance, Options, Problem, Rows, SymbolicError, Target, Variable, find};
@@ -38,18 +38,25 @@ pub fn unlisted(
         return Ok(found);
     }
     let mut found = found;
-    for (kind, target) in [(Kind::Motion, Target::Force), (Kind::Battery, Target::Power)] {
-        // A consumer that is switched with time may take any course: no law says more.
+    for (kind, target) in
+        [(Kind::Motion, Target::Force), (Kind::Battery, Target::Power), (Kind::Fuel, Target::Power)]
+    {
+        // A consumer that is switched with time may take any course: where that is long, no law says more.
         let any = found.stand.parts.iter().any(|part| {
             let cause = &case.causes[part.trial.cause];
-            kind == Kind::Battery && cause.form == Form::OverTime && cause.balances.contains(&kind)
+            kind != Kind::Motion && cause.form == Form::OverTime && cause.balances.contains(&kind)
         });
+        let any = any && rows(system) > MANY_ROWS;
         if system.has(kind) && !any {
             case.step("unlisted causes")?;
             found = beside(case, system, pool, found, (kind, target))?;
         }
     }
     Ok(found)
+}
+
+fn rows(system: &System) -> usize {
+    system.chunks.iter().map(|chunk| chunk.rows.len()).sum()
 }
 
 fn beside(
@@ -63,13 +70,15 @@ fn beside(
     let mut candidates: Vec<Vec<Part>> = Vec::new();
     // Of many rows a formula takes long to find, and where functions are needed none does by itself.
     let functions = listed.iter().any(|part| part.spread.is_some());
-    let rows: usize = system.chunks.iter().map(|chunk| chunk.rows.len()).sum();
+    let rows = rows(system);
+    let per_unit = if kind == Kind::Fuel { fuel_per_watt(case, system)? } else { 1.0 };
+    let kind = Sought { kind, target, per_unit };
     let mut starts = if functions && rows > MANY_ROWS { Vec::new() } else { vec![Vec::new()] };
     if !listed.is_empty() {
         starts.push(listed);
     }
     for start in starts {
-        let Some(mut law) = law(case, system, pool, &start, &found.stand.noises, (kind, target))? else {
+        let Some(mut law) = law(case, system, pool, &start, &found.stand.noises, kind)? else {
             continue;
         };
         if is_map(&law) {
@@ -81,7 +90,7 @@ fn beside(
         let with = |part: &Part| start.iter().cloned().chain([part.clone()]).collect::<Vec<Part>>();
         if let Some(settled) = state.settle(&with(&part), &found.stand.noises)
             && (rows <= MANY_ROWS || worth(&settled) > worth(&found.stand))
-            && let Some(better) = self::law(case, system, pool, &start, &settled.noises, (kind, target))?
+            && let Some(better) = self::law(case, system, pool, &start, &settled.noises, kind)?
             && !is_map(&better)
         {
             law = better;
@@ -96,24 +105,36 @@ fn beside(
         stand.parts.len() < MOST_CAUSES && worth(stand) + HARDLY * alone > worth(&found.stand)
     };
     let mut best: Option<Stand> = None;
+    let mut as_good: Option<Stand> = None;
+    let better =
+        |stand: &Stand, than: &Option<Stand>| than.as_ref().is_none_or(|than| worth(stand) > worth(than));
     for parts in candidates {
         let Some(stand) = state.settle(&parts, &found.stand.noises) else { continue };
         let more = if within(&stand) { state.with_listed(&stand) } else { None };
         for stand in [more, Some(stand)].into_iter().flatten() {
             let simpler = stand.parts.len() < found.stand.parts.len();
-            if !state.impossible(&stand.parts, &stand.estimate)
-                && worth(&stand) > worth(&found.stand) + margin(&found, simpler)
+            let more = worth(&stand) - worth(&found.stand);
+            let able = !state.impossible(&stand.parts, &stand.estimate)
+                && (more > margin(&found, simpler) || simpler && more > -TOLERANCE)
                 && state.works_widely(&stand)
                 && (simpler || !state.is_listed(&stand))
                 && state.sensible(&stand)
-                && state.keeps_to_priors(&stand, &found.stand)
-                && best.as_ref().is_none_or(|best| worth(&stand) > worth(best))
-            {
+                && state.keeps_to_priors(&stand, &found.stand);
+            if able && more > margin(&found, simpler) && better(&stand, &best) {
                 best = Some(stand);
+            } else if able && better(&stand, &as_good) {
+                as_good = Some(stand);
             }
         }
     }
-    Ok(best.and_then(|best| concluded(&state, best, &found)).unwrap_or(found))
+    let mut found = found;
+    if let Some(concluded) = best.and_then(|best| concluded(&state, best, &found)) {
+        return Ok(concluded);
+    }
+    if let Some(other) = as_good {
+        state.sets_as_good(&mut found, &[other]);
+    }
+    Ok(found)
 }
 
 /// Whether a law only draws a map: several shapes along the path, which softer ground or slopes are by their definition, and
@@ -190,12 +211,15 @@ impl State<'_> {
 }
 
 /// The regressor of a law.
-fn add(case: &mut Case, system: &System, pool: &mut Pool, law: &Law, kind: Kind) -> Part {
+fn add(case: &mut Case, system: &System, pool: &mut Pool, law: &Law, sought: Sought) -> Part {
+    let Sought { kind, per_unit, .. } = sought;
     let number = case.causes.len();
     case.causes.push(Cause::of_law(LawText::new(law, kind), kind));
+    let rows = |run: &Vec<f64>| run.iter().map(|value| per_unit * value).collect();
     let silent = || vec![Vec::new(); case.runs.len()];
     let column = pool.columns.len();
-    pool.columns.push(system.column(|own| if own == kind { law.prediction.clone() } else { silent() }));
+    let prediction: Vec<Vec<f64>> = law.prediction.iter().map(rows).collect();
+    pool.columns.push(system.column(|own| if own == kind { prediction.clone() } else { silent() }));
     // Its amplitudes are in it: what is estimated is one, nearly.
     pool.sd.push(1.0);
     let trial = Trial { cause: number, shape: Vec::new(), columns: vec![column], terms: vec![0] };
@@ -203,17 +227,42 @@ fn add(case: &mut Case, system: &System, pool: &mut Pool, law: &Law, kind: Kind)
     Part { trial, spread: None }
 }
 
+/// What is sought in a balance.
+#[derive(Clone, Copy)]
+struct Sought {
+    kind: Kind,
+    target: Target,
+    /// What one newton or one watt makes of the balance's rows.
+    per_unit: f64,
+}
+
+/// Power in the fuel that a consumer of one watt takes, on average.
+fn fuel_per_watt(case: &Case, system: &System) -> Result<f64, DiagnoseError> {
+    /// A consumer of a usual size [W].
+    const USUAL_W: f64 = 1000.0;
+    let consumer = Cause::consumer();
+    let column = effect(case, system, &consumer, USUAL_W, &|_| consumer.written(&[USUAL_W]))?;
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (chunk, rows) in system.chunks.iter().zip(&column) {
+        if system.kind(chunk) == Kind::Fuel && case.fit[chunk.run] {
+            sum += rows.sum();
+            count += rows.len() as f64;
+        }
+    }
+    Ok(if sum > 0.0 { sum / count } else { 1.0 })
+}
+
 /// From samples to whitened rows of one balance.
 struct Whitening<'a> {
     system: &'a System,
     whiteners: Whiteners,
-    kind: Kind,
+    sought: Sought,
 }
 
 impl Whitening<'_> {
     fn of(&self, run: usize, values: impl Fn(usize) -> nalgebra::DVector<f64>) -> Vec<f64> {
         let chunks = self.system.chunks.iter().enumerate();
-        let own = chunks.filter(|(_, chunk)| chunk.run == run && self.system.kind(chunk) == self.kind);
+        let own = chunks.filter(|(_, chunk)| chunk.run == run && self.system.kind(chunk) == self.sought.kind);
         own.flat_map(|(index, chunk)| {
             self.whiteners.white(index, chunk, &values(index)).iter().copied().collect::<Vec<_>>()
         })
@@ -225,7 +274,10 @@ impl Rows for Whitening<'_> {
     fn rows(&self, run: usize, samples: &[f64]) -> Vec<f64> {
         self.of(run, |index| {
             let rows = &self.system.chunks[index].rows;
-            nalgebra::DVector::from_iterator(rows.len(), rows.iter().map(|row| row.mean(samples)))
+            nalgebra::DVector::from_iterator(
+                rows.len(),
+                rows.iter().map(|row| self.sought.per_unit * row.mean(samples)),
+            )
         })
     }
 }
@@ -237,11 +289,11 @@ fn law(
     pool: &Pool,
     beside: &[Part],
     noises: &Noises,
-    (kind, target): (Kind, Target),
+    sought: Sought,
 ) -> Result<Option<Law>, DiagnoseError> {
     let Some(whiteners) = noises.whiteners(&system.chunks) else { return Ok(None) };
     let state = State { case, system, pool, fit: &case.fit };
-    let whitening = Whitening { system, whiteners, kind };
+    let whitening = Whitening { system, whiteners, sought };
     let runs = 0..case.runs.len();
     // What a function does is taken away; all other causes are free beside the law.
     let stand =
@@ -268,11 +320,11 @@ fn law(
                 .collect(),
         })
         .collect();
-    let variables = variables(case, kind);
+    let variables = variables(case, sought.kind);
     let fit = enough(&case.fit, &residual);
     let problem = Problem {
         variables: &variables,
-        target,
+        target: sought.target,
         rows: &whitening,
         residual: &residual,
         nuisances: &nuisances,
@@ -340,9 +392,26 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
 }
 
 impl Cause {
+    /// A consumer that is always on, whether or not any is among the causes that are tried.
+    fn consumer() -> Self {
+        let text = LawText {
+            role: "auxiliary_power",
+            text: "power_w".to_owned(),
+            constants_text: "{\"power_w\": 1.0}".to_owned(),
+            constants: Vec::new(),
+            depends_on: Vec::new(),
+            cost: 0.0,
+        };
+        Self::of_law(text, Kind::Fuel)
+    }
+
     /// A cause that is a law.
     fn of_law(law: LawText, kind: Kind) -> Self {
-        let balances: &'static [Kind] = if kind == Kind::Motion { &[Kind::Motion] } else { &[Kind::Battery] };
+        let balances: &'static [Kind] = match kind {
+            Kind::Motion => &[Kind::Motion],
+            Kind::Fuel => &[Kind::Fuel],
+            _ => &[Kind::Battery],
+        };
         Self {
             id: "unlisted",
             class: Class::Unlisted,

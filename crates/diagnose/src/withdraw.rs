@@ -4,6 +4,7 @@ use crate::balance::Kind;
 use crate::catalogue::Form;
 use crate::contradiction::withhold;
 use crate::events::Event;
+use crate::faults::Fault;
 use crate::prove::{Proof, prove, told_by};
 use crate::refine::{Refined, refine, spells};
 use crate::search::Found;
@@ -47,13 +48,14 @@ impl Proven {
 }
 
 /// Values and proof of what was found; causes with which runs held out are worse than with the nominal scenario are taken
-/// back, the one first that does most harm.
+/// back, the one first that does most harm. Where a sensor is at fault by what it shows itself, that is what is told.
 pub fn proven(
     case: &Case,
     system: &System,
     pool: &mut Pool,
     found: Found,
     events: &[Event],
+    faults: &[Fault],
 ) -> Result<Proven, DiagnoseError> {
     let mut best = Proven::of(case, system, pool, found, events, None)?;
     // One signal tells of all of them.
@@ -74,7 +76,7 @@ pub fn proven(
         best = lesser;
         withdrawn = true;
     }
-    if withdrawn && best.refined.causes.is_empty() && best.withheld.is_none() {
+    if withdrawn && best.refined.causes.is_empty() && best.withheld.is_none() && faults.is_empty() {
         best.withheld = Some(nothing_left(case, &best.found));
     }
     Ok(best)

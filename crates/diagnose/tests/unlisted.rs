@@ -5,13 +5,14 @@
 
 mod setting;
 
+use headland_calibrate::statistics::Draws;
 use headland_diagnose::{Diagnosed, FindingKind, Options, Verdict};
 use headland_plugin::Situation;
 use headland_recording::Recording;
 use headland_scenario::Scenario;
 use headland_sim::simulate;
 use headland_trace::{Origin, Trace};
-use setting::{found, named, recorded, scenario};
+use setting::{found, found_of_scenario, named, recorded, recording_of_scenario, scenario};
 use std::path::Path;
 
 /// A wave along the path: no listed cause has one.
@@ -82,6 +83,56 @@ fn a_wave_along_the_path_is_found_as_an_equation_that_runs() {
 #[test]
 fn a_drag_that_dies_away_with_speed_is_found_as_an_equation_that_runs() {
     is_found_as_a_law(FADING);
+}
+
+/// The same tractor with an engine instead of a battery.
+fn with_an_engine(effects: &str) -> String {
+    const ENGINE: &str = r#"EngineCvt(
+            displacement_m3: 8e-3, willans_efficiency: 0.42, willans_friction_pa: "1.7 bar", lower_heating_value_j_kg: 42.8e6,
+            full_load: [(speed_rad_s: 80, torque_n_m: 900), (speed_rad_s: 150, torque_n_m: 1100), (speed_rad_s: 220, torque_n_m: 800)],
+            idle_speed_rad_s: 80, load_share: 0.9, transmission_efficiency: 0.9, max_force_n: 100000, accessory_power_w: 3000,
+            alternator_efficiency: 0.6, wheel_radius_m: 0.9, rotating_mass_kg: 0,
+        ),
+    ),
+    ground"#;
+    let text = scenario(0.069, effects, "");
+    let (before, rest) = text.split_once("ElectricSingleSpeed").unwrap();
+    let (_, after) = rest.split_once("ground").unwrap();
+    format!("{before}{ENGINE}{after}")
+}
+
+/// A fan that takes over where no wind cools any more, and only fuel tells of it.
+#[test]
+fn a_consumer_by_a_law_of_speed_is_found_in_the_fuel_and_in_watts() {
+    const FAN: &str = r#"expression(auxiliary_power: "p_w * exp(-v / v0_m_s)", constants: {"p_w": 30000.0, "v0_m_s": 2.5})"#;
+    let registry = headland_stock::registry();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "fuel_rate_kg_s" => value + 1e-4 * draws.normal(),
+        _ => value,
+    };
+    let channels = ["speed_m_s", "position_m", "heading_rad", "fuel_rate_kg_s"];
+    let recording = recording_of_scenario(&with_an_engine(FAN), &registry, &channels, (5, &noisy));
+    // These drives pass every place at one speed, and a function of the place would say the same.
+    let without = ["grade", "soft_ground"].map(str::to_owned).to_vec();
+    let options = Options { without, ..Options::default() };
+    let found = found_of_scenario(&with_an_engine(""), &recording, &options, &registry).unwrap();
+    let said = &found.diagnosis;
+    assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);
+    let improved = Scenario::of_text("improved.ron", &found.scenarios[0], Path::new(""), &registry).unwrap();
+    let model = improved.model(&registry).unwrap();
+    let power_w = |speed_m_s: f64| {
+        let situation = Situation { speed_m_s, ..Situation::default() };
+        model
+            .effects
+            .iter()
+            .map(|one| one.plugin.act(&situation, &[], &mut []).auxiliary_power_w)
+            .sum::<f64>()
+    };
+    // What is the same at every speed belongs to the consumers that are known.
+    let told = power_w(2.0) - power_w(6.0);
+    let truth = 30_000.0 * ((-2.0_f64 / 2.5).exp() - (-6.0_f64 / 2.5).exp());
+    assert!((told / truth - 1.0).abs() < 0.15, "{told} W, {truth} W: {}", said.answer);
 }
 
 /// Where the true cause is not in the library, no other is claimed as if it were certain.

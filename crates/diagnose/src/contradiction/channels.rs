@@ -126,13 +126,15 @@ fn faster_than_driven<'a>(
         let time_s = drive.measured.trace.time_s();
         let mut lasts_s = 0.0;
         let mut slopes = Vec::new();
-        for i in 1..time_s.len() {
-            let Some(force_n) = force(drive, i) else { continue };
-            let gains = drive.motion.slope[i];
-            let slope = (gains + (said.resistance_n[i] - force_n) / said.effective_mass_kg[i])
-                / STANDARD_GRAVITY_M_S2;
+        for (from, to) in windows(time_s) {
+            let forces: Option<Vec<f64>> = (from..to).map(|i| force(drive, i)).collect();
+            let Some(forces) = forces else { continue };
+            let mean = |of: &dyn Fn(usize) -> f64| (from..to).map(of).sum::<f64>() / (to - from) as f64;
+            let gains = mean(&|i| drive.motion.slope[i]);
+            let held_back = mean(&|i| (said.resistance_n[i] - forces[i - from]) / said.effective_mass_kg[i]);
+            let slope = (gains + held_back) / STANDARD_GRAVITY_M_S2;
             if gains > SPEEDS_UP_M_S2 && slope > STEEPEST {
-                lasts_s += time_s[i] - time_s[i - 1];
+                lasts_s += time_s[to] - time_s[from];
                 slopes.push(slope);
             }
         }
@@ -142,6 +144,19 @@ fn faster_than_driven<'a>(
         }
     }
     (runs, steepest)
+}
+
+/// Windows of a second and more, one after the other: first sample and the one behind the last. Within them a coarse speed
+/// climbs one of its steps at most, which no sample by itself can be asked.
+fn windows(time_s: &[f64]) -> Vec<(usize, usize)> {
+    const LONG_S: f64 = 1.0;
+    let mut all = Vec::new();
+    let mut from = 0;
+    while let Some(to) = (from + 1..time_s.len()).find(|to| time_s[*to] - time_s[from] >= LONG_S) {
+        all.push((from, to));
+        from = to;
+    }
+    all
 }
 
 /// Vehicles that speed up coasting at the same place both ways: no slope and no wind does that.
@@ -265,16 +280,13 @@ pub fn powers(case: &Case) -> Option<String> {
         else {
             continue;
         };
-        let time_s = drive.measured.trace.time_s();
-        let mut from = 0;
-        while let Some(to) = (from + 1..time_s.len()).find(|to| time_s[*to] - time_s[from] >= 1.0) {
+        for (from, to) in windows(drive.measured.trace.time_s()) {
             let mean = |of: &dyn Fn(usize) -> f64| (from..to).map(of).sum::<f64>() / (to - from) as f64;
             let moved = mean(&|i| force[i] * drive.motion.value[i]);
             let drawn = mean(&|i| battery[i]);
             if moved.is_finite() && drawn.is_finite() {
                 pairs.all.push((moved, drawn));
             }
-            from = to;
         }
     }
     let (_, together) = pairs.slope()?;

@@ -73,6 +73,7 @@ pub fn report(
         before: &before,
         withheld: beside.withheld.as_deref(),
         null_space: &refined.null_space,
+        own_spells: beside.events.iter().any(|event| !case.fit[event.run]),
     };
     let diagnosis = Diagnosis {
         schema: "headland.diagnosis/1",

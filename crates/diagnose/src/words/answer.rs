@@ -23,6 +23,8 @@ pub struct Told<'a> {
     pub withheld: Option<&'a str>,
     /// What the data cannot separate.
     pub null_space: &'a [String],
+    /// Whether runs that were held out have spells of their own, which they themselves tell.
+    pub own_spells: bool,
 }
 
 /// The paragraph: what was looked at, what fails first, what was left out, what it explains, what cannot be told.
@@ -142,7 +144,12 @@ fn proof(told: &Told) -> String {
     } else {
         ""
     };
-    format!("{text}{sensor}{doubt}.")
+    let own = if told.own_spells && told.fit.held_out.is_some() {
+        "; when and how strong its spells are, such a run tells itself, which could not be foreseen"
+    } else {
+        ""
+    };
+    format!("{text}{sensor}{doubt}{own}.")
 }
 
 /// What is not explained.

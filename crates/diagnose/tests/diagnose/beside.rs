@@ -40,3 +40,30 @@ fn a_cause_that_makes_an_unseen_run_worse_is_not_claimed() {
     assert!(found.answer.contains("do not have in common"), "{}", found.answer);
     assert!(!found.unproven.is_empty());
 }
+
+/// Each run is pulled back for a while of its own, by less than a fiftieth of its weight: what lies between two edges is told
+/// by how quiet the rest is.
+#[test]
+fn pulls_too_weak_to_stand_out_by_themselves_are_told_by_their_edges() {
+    let of_run = |run: usize| {
+        let from_s = 4.0 + 2.5 * run as f64;
+        let force_n = 1300.0 + 150.0 * run as f64;
+        let to_s = from_s + 6.0;
+        let pull = format!("drawbar_load(force_n: {force_n:?}, from_s: {from_s:?}, to_s: {to_s:?})");
+        (recorded(0.069, &pull), force_n, (from_s, to_s))
+    };
+    let all: Vec<_> = (0..5).map(of_run).collect();
+    let mut recording = recorded(0.069, "");
+    for (place, (own, ..)) in all.iter().enumerate() {
+        recording.runs[place].trace = own.runs[place].trace.clone();
+    }
+    let found = found(&recording, &Options::default()).unwrap();
+    assert!(named(&found, "drawbar_load"), "{}", found.diagnosis.answer);
+    let pull = found.diagnosis.findings.iter().find(|one| one.id == "drawbar_load").unwrap();
+    for (run, (_, _, (from_s, to_s))) in all.iter().enumerate() {
+        let id = format!("r{run}");
+        let own: Vec<_> = pull.stretches.iter().filter(|place| place.run == id).collect();
+        assert!(own.len() == 1, "{id}: {own:?}");
+        assert!((own[0].from_s - from_s).abs() < 0.6 && (own[0].to_s - to_s).abs() < 0.6, "{id}: {own:?}");
+    }
+}

@@ -78,3 +78,15 @@ fn a_consumer_is_found_by_the_state_of_charge_alone() {
     let refused = super::found(&recording, &Options::default()).unwrap_err().to_string();
     assert!(refused.contains("no balance can be made"), "{refused}");
 }
+
+/// Every step of a coarse speed is an acceleration that nothing made.
+#[test]
+fn a_coarse_speed_contradicts_no_force() {
+    const STEP_M_S: f64 = 0.4;
+    let coarse = super::changed(&super::recorded(0.07, ""), "speed_m_s", |speed, _, _| {
+        STEP_M_S * (speed / STEP_M_S).round()
+    });
+    let found = found(&coarse, &Options::default()).unwrap();
+    assert!(named(&found, "quantisation"), "{}", found.diagnosis.answer);
+    assert_eq!(found.diagnosis.findings.len(), 1, "{}", found.diagnosis.answer);
+}

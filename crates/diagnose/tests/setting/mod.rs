@@ -89,8 +89,17 @@ pub fn recording_of(
     channels: &[&str],
     (seed, sensor): (u64, Sensor),
 ) -> Recording {
-    let text = scenario(coefficient, effects, "");
-    let scenario = Scenario::of_text("truth.ron", &text, Path::new(""), registry).unwrap();
+    recording_of_scenario(&scenario(coefficient, effects, ""), registry, channels, (seed, sensor))
+}
+
+/// The drives of a scenario.
+pub fn recording_of_scenario(
+    text: &str,
+    registry: &Registry,
+    channels: &[&str],
+    (seed, sensor): (u64, Sensor),
+) -> Recording {
+    let scenario = Scenario::of_text("truth.ron", text, Path::new(""), registry).unwrap();
     let runs = scenario.runs.iter().enumerate().map(|(number, spec)| {
         let scenario = scenario.run(spec, registry).unwrap();
         let model = scenario.model(registry).unwrap();
@@ -133,8 +142,17 @@ pub fn found_with(
     more: &str,
     registry: &Registry,
 ) -> Result<Diagnosed, DiagnoseError> {
-    let text = scenario(0.069, "", more);
-    let scenario = Scenario::of_text("nominal.ron", &text, Path::new(""), registry).unwrap();
+    found_of_scenario(&scenario(0.069, "", more), recording, options, registry)
+}
+
+/// What is found with a scenario.
+pub fn found_of_scenario(
+    text: &str,
+    recording: &Recording,
+    options: &Options,
+    registry: &Registry,
+) -> Result<Diagnosed, DiagnoseError> {
+    let scenario = Scenario::of_text("nominal.ron", text, Path::new(""), registry).unwrap();
     diagnose(&scenario, recording, registry, options, &Silent)
 }
 

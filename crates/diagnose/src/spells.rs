@@ -1,0 +1,157 @@
+//! Which spells there are in single runs: those that stand out from all that is left, and those that only stand out where the
+//! noise is what neighbouring rows show, if they make the recordings more likely than anything that all runs have in common.
+
+use crate::balance::{Kind, System, block_s};
+use crate::events::{self, Event, Spot, Stretches};
+use crate::look::{Look, MANY_ROWS};
+use crate::search::{Accepted, Found, search_without, worth};
+use crate::state::{Stand, State};
+use crate::{Case, DiagnoseError, unlisted};
+use nalgebra::DVector;
+
+/// Spells in single runs are set aside, and what every run has in common is looked for once more without them.
+pub fn spells(
+    case: &mut Case,
+    look: &mut Look,
+    sound: &[Vec<bool>],
+    braked: &[Event],
+) -> Result<Vec<Event>, DiagnoseError> {
+    let mut events = quiet(case, look)?;
+    if events.is_empty() {
+        events = loud(case, look);
+    }
+    let named = events::named(&case.runs, &events).into_iter();
+    let mut events: Vec<Event> =
+        named.filter(|(id, _)| case.wanted(id)).flat_map(|(_, events)| events).collect();
+    if events.is_empty() {
+        return Ok(braked.to_vec());
+    }
+    let usable = outside(case, sound, &events);
+    look.again(case, &usable)?;
+    look.sharpen(case)?;
+    events.extend_from_slice(braked);
+    events.sort_by(|one, other| one.run.cmp(&other.run).then(one.from_s.total_cmp(&other.from_s)));
+    Ok(events)
+}
+
+/// The samples that are usable and lie in no spell.
+pub fn outside(case: &Case, usable: &[Vec<bool>], events: &[Event]) -> Vec<Vec<bool>> {
+    let mut outside = events::outside(&case.runs, events, block_s(Kind::Motion, &case.runs, case.rows));
+    for (outside, usable) in outside.iter_mut().zip(usable) {
+        for (outside, usable) in outside.iter_mut().zip(usable) {
+            *outside &= usable;
+        }
+    }
+    outside
+}
+
+/// Spells that stand out from all that is left.
+fn loud(case: &Case, look: &Look) -> Vec<Event> {
+    // A function of time can imitate spells; it is looked at without.
+    let timed = |one: &Accepted| {
+        let cause = &case.causes[one.trial.cause];
+        cause.id == "payload_change" && cause.is_function()
+    };
+    if look.found.accepted.iter().any(timed) {
+        let plain = search_without(case, &look.system, &look.pool, &["payload_change"]);
+        events::events(case, &look.system, plain.as_ref().unwrap_or(&look.found))
+    } else {
+        events::events(case, &look.system, &look.found)
+    }
+}
+
+/// Spells with which the recordings are more likely than with all that was found, laws that nobody listed among it.
+fn quiet(case: &mut Case, look: &Look) -> Result<Vec<Event>, DiagnoseError> {
+    /// As much as any other cause takes that no other run shows.
+    const LEAST: f64 = 20.0;
+    let rows: usize = look.system.chunks.iter().map(|chunk| chunk.rows.len()).sum();
+    if rows > MANY_ROWS / 2 || !look.system.has(Kind::Motion) {
+        return Ok(Vec::new());
+    }
+    let state = State { case, system: &look.system, pool: &look.pool, fit: &case.fit };
+    let mut starts = vec![&look.found.stand];
+    if !look.found.stand.parts.is_empty() {
+        starts.push(&look.found.first);
+    }
+    let enough = worth(&look.found.stand) + LEAST;
+    let told = starts.into_iter().filter_map(|start| state.with_spots(start, enough));
+    let Some((score, spots)) = told.max_by(|one, other| one.0.total_cmp(&other.0)) else {
+        return Ok(Vec::new());
+    };
+    let events = events::within_runs(case, &events::joined(spots));
+    if events.is_empty() || score < enough {
+        return Ok(Vec::new());
+    }
+    let law = worth_with_a_law(case, look)?;
+    Ok(if score < law + LEAST { Vec::new() } else { events })
+}
+
+/// How likely the recordings are with a law that nobody listed, where there is one.
+fn worth_with_a_law(case: &mut Case, look: &Look) -> Result<f64, DiagnoseError> {
+    let (causes, mut pool) = (case.causes.len(), look.pool.clone());
+    let found: Found = unlisted::unlisted(case, &look.system, &mut pool, look.found.clone())?;
+    case.causes.truncate(causes);
+    Ok(worth(&found.stand))
+}
+
+impl State<'_> {
+    /// How good a set is with spells beside it, and what those are; none where no spell stands out. It ought to become as
+    /// good as is `wanted`.
+    fn with_spots(&self, start: &Stand, wanted: f64) -> Option<(f64, Vec<Spot>)> {
+        /// Noise, causes and spells belong together: they are found in turns, first at the noise that neighbouring rows show,
+        /// with which a cause gives back what it took of the spells, then at that of what is left.
+        const ROUNDS: usize = 10;
+        const QUIET: usize = 3;
+        /// What no driver feels is no spell: share of the weight.
+        const FAINT: f64 = 0.005;
+        /// What is so far from what is wanted then does not get there.
+        const HOPELESS: f64 = 100.0;
+        /// Begin, end and force of a spell: each was one of about a hundred.
+        const PER_SPELL: f64 = 14.0;
+        let mut best: Option<(f64, Vec<Spot>)> = None;
+        let mut noises = self.quiet(start);
+        let mut left = start.left.clone();
+        for round in 1..=ROUNDS {
+            let mut spots = events::spots(self.case, self.system, &left, &noises, Stretches::Every);
+            spots.retain(|spot| spot.event.force_n > FAINT * events::weight_n(self.case, spot.event.run));
+            if spots.is_empty() {
+                break;
+            }
+            let without = less(self.system, &spots);
+            let beside = State { system: &without, ..*self };
+            let stand = beside.settle(&start.parts, &noises)?;
+            let fitted = events::joined(spots.clone()).iter().filter(|event| self.fit[event.run]).count();
+            let score = worth(&stand) - PER_SPELL * fitted as f64;
+            left = left_with(&stand, &spots);
+            noises = if round < QUIET { beside.quiet(&stand) } else { stand.noises };
+            if best.as_ref().is_none_or(|(other, _)| score > *other) {
+                best = Some((score, spots));
+            } else if round > QUIET {
+                break;
+            }
+            if round > QUIET && score < wanted - HOPELESS {
+                break;
+            }
+        }
+        best
+    }
+}
+
+/// What a set leaves of every row, spells still in it.
+fn left_with(stand: &Stand, spots: &[Spot]) -> Vec<DVector<f64>> {
+    let mut left = stand.left.clone();
+    for spot in spots {
+        left[spot.chunk].rows_mut(spot.rows.0, spot.rows.1 - spot.rows.0).add_scalar_mut(spot.event.force_n);
+    }
+    left
+}
+
+/// The rows without what spells explain.
+fn less(system: &System, spots: &[Spot]) -> System {
+    let mut without = system.clone();
+    for spot in spots {
+        let mut rows = without.residual[spot.chunk].rows_mut(spot.rows.0, spot.rows.1 - spot.rows.0);
+        rows.add_scalar_mut(-spot.event.force_n);
+    }
+    without
+}

@@ -231,7 +231,7 @@ fn cause(
 
 impl Cause {
     /// Places of the begin and of the end of a window among the terms, where it has one.
-    fn window(&self) -> Option<(usize, usize)> {
+    pub fn window(&self) -> Option<(usize, usize)> {
         let place = |name: &str| self.terms.iter().position(|term| term.name == name);
         Some((place("from_s")?, place("to_s")?))
     }

@@ -17,6 +17,18 @@ const MOST_MOVES: usize = 5;
 /// The factor's root is taken so many times.
 const ROUNDS: usize = 8;
 
+/// How a shape is judged.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum How {
+    /// By itself: a wrong companion must not hold it where it is.
+    ByItself,
+    /// Beside what it was accepted with, by the same terms.
+    Beside,
+    /// Beside it as well, by any of its terms, at the noise that neighbouring rows show: while a window is not where it
+    /// belongs, what its edges leave passes for noise, and any other place is as good.
+    Quietly,
+}
+
 /// Adds a trial at the best shape, of the best causes that have one. Whether there was anything to add.
 pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> Result<bool, DiagnoseError> {
     let Some(round) = found.tried.first() else { return Ok(false) };
@@ -41,12 +53,17 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
     }
     let mut added = false;
     for (cause, shape) in chosen {
-        // By itself, and beside what it was accepted with: a wrong companion must not hold it where it is.
-        for beside in [false, true] {
-            if beside && !found.accepted.iter().any(|one| one.trial.cause == cause) {
+        let accepted = found.accepted.iter().any(|one| one.trial.cause == cause);
+        for how in [How::ByItself, How::Beside, How::Quietly] {
+            let able = match how {
+                How::ByItself => true,
+                How::Beside => accepted,
+                How::Quietly => accepted && case.causes[cause].window().is_some(),
+            };
+            if !able {
                 continue;
             }
-            let best = best(case, system, pool, found, beside, (cause, &shape))?;
+            let best = best(case, system, pool, found, how, (cause, &shape))?;
             if best != shape {
                 add_trial(case, system, pool, cause, &best)?;
                 added = true;
@@ -62,12 +79,12 @@ fn best(
     system: &System,
     pool: &mut Pool,
     found: &Found,
-    beside: bool,
+    how: How,
     (cause, start): (usize, &[f64]),
 ) -> Result<Vec<f64>, DiagnoseError> {
     let (columns, trials) = (pool.columns.len(), pool.trials.len());
-    let accepted = found.accepted.iter().find(|one| beside && one.trial.cause == cause);
-    let wanted = accepted.map(|one| one.trial.terms.clone());
+    let accepted = found.accepted.iter().find(|one| how != How::ByItself && one.trial.cause == cause);
+    let wanted = accepted.filter(|_| how == How::Beside).map(|one| one.trial.terms.clone());
     // Beside the other accepted causes, but for functions.
     let others: Vec<Part> = found
         .accepted
@@ -75,7 +92,11 @@ fn best(
         .filter(|one| accepted.is_some() && one.trial.cause != cause && one.function.is_none())
         .map(|one| Part { trial: one.trial.clone(), spread: None })
         .collect();
-    let noises = if accepted.is_some() { &found.noises.1 } else { &found.noises.0 };
+    let noises = match how {
+        How::ByItself => found.noises.0.clone(),
+        How::Beside => found.noises.1.clone(),
+        How::Quietly => State { case, system, pool, fit: &case.fit }.quiet(&found.stand),
+    };
     let mut likely = |shape: &[f64]| -> Result<f64, DiagnoseError> {
         if !case.causes[cause].possible(shape) {
             return Ok(f64::NEG_INFINITY);
@@ -88,7 +109,7 @@ fn best(
         let judged = new.filter_map(|trial| {
             let mut parts = others.clone();
             parts.push(Part { trial: trial.clone(), spread: None });
-            state.likely(&parts, noises)
+            state.likely(&parts, &noises)
         });
         let greatest = judged.fold(f64::NEG_INFINITY, f64::max);
         pool.truncate(columns, trials);

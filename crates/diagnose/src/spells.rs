@@ -65,7 +65,7 @@ fn quiet(case: &mut Case, look: &Look) -> Result<Vec<Event>, DiagnoseError> {
     /// As much as any other cause takes that no other run shows.
     const LEAST: f64 = 20.0;
     let rows: usize = look.system.chunks.iter().map(|chunk| chunk.rows.len()).sum();
-    if rows > MANY_ROWS / 2 || !look.system.has(Kind::Motion) {
+    if rows > MANY_ROWS || !look.system.has(Kind::Motion) {
         return Ok(Vec::new());
     }
     let state = State { case, system: &look.system, pool: &look.pool, fit: &case.fit };

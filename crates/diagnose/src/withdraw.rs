@@ -5,7 +5,7 @@ use crate::catalogue::Form;
 use crate::contradiction::withhold;
 use crate::events::Event;
 use crate::faults::Fault;
-use crate::prove::{Proof, prove, told_by};
+use crate::prove::{Errors, Proof, prove, told_by};
 use crate::refine::{Refined, refine, spells};
 use crate::search::Found;
 use crate::state::{Part, State};
@@ -76,10 +76,40 @@ pub fn proven(
         best = lesser;
         withdrawn = true;
     }
+    for place in (0..best.found.stand.parts.len()).rev() {
+        if let Some(lesser) = without_idle_law(case, system, pool, &best, events, place)? {
+            best = Proven::of(case, system, pool, lesser, events, by)?;
+            withdrawn = true;
+        }
+    }
     if withdrawn && best.refined.causes.is_empty() && best.withheld.is_none() && faults.is_empty() {
         best.withheld = Some(nothing_left(case, &best.found));
     }
     Ok(best)
+}
+
+/// What was found without one law that nobody listed, where runs held out are no better with it than without it or than
+/// with the nominal scenario, in the balance that it belongs to: a formula is free to follow the runs that it was made of.
+fn without_idle_law(
+    case: &Case,
+    system: &System,
+    pool: &mut Pool,
+    best: &Proven,
+    events: &[Event],
+    place: usize,
+) -> Result<Option<Found>, DiagnoseError> {
+    let trial = &best.found.stand.parts[place].trial;
+    let cause = &case.causes[trial.cause];
+    let kind = system.kinds.iter().copied().find(|kind| cause.law.is_some() && kind.among(cause.balances));
+    let (Some(kind), Some(found)) = (kind, without(case, system, pool, &best.found, place)) else {
+        return Ok(None);
+    };
+    let with = Proven::of(case, system, pool, best.found.clone(), events, Some(kind))?.proof.held_out;
+    let lesser = Proven::of(case, system, pool, found.clone(), events, Some(kind))?.proof.held_out;
+    let least = |with: Errors, lesser: Errors| lesser.after.min(with.before);
+    let idle =
+        with.zip(lesser).is_some_and(|(with, lesser)| with.after > (1.0 - RISES) * least(with, lesser));
+    Ok(idle.then_some(found))
 }
 
 /// What is said where everything was taken back.
@@ -87,8 +117,8 @@ fn nothing_left(case: &Case, found: &Found) -> String {
     let mut names: Vec<&str> = found.unproven.iter().map(|cause| case.causes[*cause].words).collect();
     names.dedup();
     format!(
-        "Something is missing that these runs do not have in common: {} would explain those that were fitted and makes those \
-         held out worse, so nothing of it is claimed.",
+        "Something is missing that these runs do not have in common: {} would explain those that were fitted and does \
+         not help those held out, so nothing of it is claimed.",
         names.join(" and ")
     )
 }

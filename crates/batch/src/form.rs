@@ -168,35 +168,10 @@ fn with(mut form: Form, path: &str, other: Form) -> Form {
 mod tests {
     use super::*;
 
-    /// Paths of all fields of a form, variants included.
-    fn paths(form: &Form, path: &str, all: &mut Vec<String>) {
-        let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
-        match form {
-            Form::List(inner) | Form::Map(inner) => paths(inner, path, all),
-            Form::Either(forms) => forms.iter().for_each(|form| paths(form, path, all)),
-            Form::Fields(fields) => {
-                for field in fields {
-                    all.push(below(&field.name));
-                    paths(&field.form, &below(&field.name), all);
-                }
-            }
-            Form::Choice(variants) => {
-                for (name, inner) in variants {
-                    all.push(below(name));
-                    if let Some(inner) = inner {
-                        paths(inner, &below(name), all);
-                    }
-                }
-            }
-            _ => {}
-        }
-    }
-
     #[test]
     fn every_field_is_told_and_nothing_else_is() {
         for definition in definitions() {
-            let mut all = Vec::new();
-            paths(&definition.form, "", &mut all);
+            let all = definition.form.paths();
             for path in &all {
                 assert!(
                     definition.notes.iter().any(|note| note.path == path),

@@ -37,6 +37,38 @@ pub enum Form {
     Named(&'static str),
 }
 
+impl Form {
+    /// Paths of all its fields and variants, `cycle.Hold.for_s`; values of lists and maps have the path of what holds them.
+    pub fn paths(&self) -> Vec<String> {
+        let mut all = Vec::new();
+        self.add_paths("", &mut all);
+        all
+    }
+
+    fn add_paths(&self, path: &str, all: &mut Vec<String>) {
+        let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
+        match self {
+            Self::List(inner) | Self::Map(inner) => inner.add_paths(path, all),
+            Self::Either(forms) => forms.iter().for_each(|form| form.add_paths(path, all)),
+            Self::Fields(fields) => {
+                for field in fields {
+                    all.push(below(&field.name));
+                    field.form.add_paths(&below(&field.name), all);
+                }
+            }
+            Self::Choice(variants) => {
+                for (name, inner) in variants {
+                    all.push(below(name));
+                    if let Some(inner) = inner {
+                        inner.add_paths(&below(name), all);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
 /// A field of a struct.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {

@@ -1,0 +1,259 @@
+//! A cause that is tried: an effect of the simulator, how its parameters are written, and what it can be.
+
+use super::law_text::LawText;
+use super::term::Term;
+use crate::balance::Kind;
+use crate::own::Own;
+
+/// What a finding is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    /// Something of the world.
+    Physics,
+    /// Something of a sensor.
+    Artefact,
+    /// Something that nobody listed.
+    Unlisted,
+}
+
+/// How the cause enters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// By parameters.
+    Parameters,
+    /// By a function of the position along the path.
+    OverPosition,
+    /// By a function of time, of its own in each run.
+    OverTime,
+    /// By a change of what was measured.
+    Measured,
+    /// By an equation that was found.
+    Law,
+}
+
+/// A cause that is tried.
+#[derive(Clone, Debug)]
+pub struct Cause {
+    /// The contract's identifier.
+    pub id: &'static str,
+    /// World or sensor.
+    pub class: Class,
+    /// Balances that it can explain.
+    pub balances: &'static [Kind],
+    /// How it enters.
+    pub form: Form,
+    /// Its parameters.
+    pub terms: Vec<Term>,
+    /// Values at which its non-linear parameters are tried, in the order of the terms; one empty list where there are none.
+    pub shapes: Vec<Vec<f64>>,
+    /// Its equation.
+    pub equation: &'static str,
+    /// Channels that it depends on.
+    pub depends_on: &'static [&'static str],
+    /// What a person calls it: 'a wind', 'softer ground'.
+    pub words: &'static str,
+    /// The run that would show it best.
+    pub experiment: &'static str,
+    /// The equation, where it was found.
+    pub law: Option<LawText>,
+    /// How it is written, where it is the user's.
+    pub own: Option<Own>,
+    /// The one run in which it works; none where it works in all of them.
+    pub run: Option<usize>,
+}
+
+pub fn cause(
+    id: &'static str,
+    balances: &'static [Kind],
+    terms: Vec<Term>,
+    equation: &'static str,
+    depends_on: &'static [&'static str],
+    words: &'static str,
+    experiment: &'static str,
+) -> Cause {
+    Cause {
+        id,
+        class: Class::Physics,
+        balances,
+        form: Form::Parameters,
+        terms,
+        shapes: vec![Vec::new()],
+        equation,
+        depends_on,
+        words,
+        experiment,
+        law: None,
+        own: None,
+        run: None,
+    }
+}
+
+impl Cause {
+    /// Places of the begin and of the end of a window among the terms, where it has one.
+    pub fn window(&self) -> Option<(usize, usize)> {
+        let place = |name: &str| self.terms.iter().position(|term| term.name == name);
+        Some((place("from_s")?, place("to_s")?))
+    }
+
+    /// Whether a shape can be: what lasts has to begin before it ends.
+    pub fn possible(&self, shape: &[f64]) -> bool {
+        let Some((from, to)) = self.window() else { return true };
+        let place = |term: usize| self.terms[..term].iter().filter(|term| !term.linear).count();
+        match (shape.get(place(from)), shape.get(place(to))) {
+            (Some(from), Some(to)) => from < to,
+            _ => true,
+        }
+    }
+
+    /// Where a term has to stay so that a window, which has these values, begins before it ends.
+    pub fn within(&self, term: usize, values: &[f64]) -> (f64, f64) {
+        let Some((from, to)) = self.window() else { return (f64::NEG_INFINITY, f64::INFINITY) };
+        // Each has its own side of the middle.
+        let middle = 0.5 * (values[from] + values[to]);
+        match term {
+            term if term == from => (f64::NEG_INFINITY, middle),
+            term if term == to => (middle, f64::INFINITY),
+            _ => (f64::NEG_INFINITY, f64::INFINITY),
+        }
+    }
+
+    pub fn shaped(mut self, shapes: Vec<Vec<f64>>) -> Self {
+        self.shapes = shapes;
+        self
+    }
+
+    pub fn in_run(mut self, run: usize) -> Self {
+        self.run = Some(run);
+        self
+    }
+
+    /// The effect as it is in a run in which the cause does not work.
+    pub fn idle(&self) -> String {
+        let values: Vec<f64> = self.terms.iter().map(|term| f64::from(u8::from(!term.linear))).collect();
+        self.written(&values)
+    }
+
+    pub fn over(mut self, form: Form) -> Self {
+        self.form = form;
+        self
+    }
+
+    pub fn artefact(mut self) -> Self {
+        self.class = Class::Artefact;
+        self.form = Form::Measured;
+        self
+    }
+
+    /// Its equation, in words of the catalogue or as it was found.
+    pub fn equation_text(&self) -> String {
+        if let Some(own) = &self.own {
+            return own.equation.clone();
+        }
+        match &self.law {
+            Some(LawText { role: "resistance", text, .. }) => format!("F = {text}"),
+            Some(LawText { text, .. }) => format!("P = {text}"),
+            None => self.equation.to_owned(),
+        }
+    }
+
+    /// Channels that it depends on.
+    pub fn channels(&self) -> Vec<String> {
+        let own = self.own.as_ref().map_or(self.depends_on, |own| &own.depends_on);
+        let listed = self.law.as_ref().map_or(own, |law| &law.depends_on);
+        listed.iter().map(|name| (*name).to_owned()).collect()
+    }
+
+    /// Whether it is a function of position or time.
+    pub fn is_function(&self) -> bool {
+        matches!(self.form, Form::OverPosition | Form::OverTime)
+    }
+
+    /// A function's cause with one value throughout: its identifier, and the parameter's name.
+    pub fn even(&self) -> Option<(&'static str, &'static str)> {
+        match (self.is_function(), self.id) {
+            (false, _) => None,
+            (true, "grade") => Some(("grade_constant", "grade")),
+            (true, "soft_ground") => Some(("rolling_resistance", "coefficient")),
+            (true, "payload_change") => Some(("mass", "extra_mass_kg")),
+            (true, _) => Some(("auxiliary_power", "power_w")),
+        }
+    }
+
+    /// The effect of a function that has one value throughout, as a scenario writes it.
+    pub fn constant(&self, value: f64) -> String {
+        self.even().map_or_else(String::new, |(id, name)| format!("{id}({name}: {value:?})"))
+    }
+
+    /// Whether a value of a term is what it cannot be.
+    pub fn impossible(&self, term: usize, value: f64) -> bool {
+        !(self.terms[term].low..=self.terms[term].high).contains(&value)
+    }
+
+    /// The effect as a scenario writes it, with all parameters in the order of the terms.
+    pub fn written(&self, values: &[f64]) -> String {
+        if let Some(own) = &self.own {
+            return own.written(values[0]);
+        }
+        if let Some(law) = &self.law {
+            let LawText { role, text, constants_text, .. } = law;
+            return format!(
+                "expression({role}: \"{:?} * ({text})\", constants: {constants_text})",
+                values[0]
+            );
+        }
+        match self.id {
+            "wind" => {
+                let (north, east) = (values[0], values[1]);
+                let from = east.atan2(north).rem_euclid(std::f64::consts::TAU);
+                format!("wind(speed_m_s: {:?}, from_rad: {from:?})", north.hypot(east))
+            }
+            "cornering_drag" => {
+                format!("cornering_drag(cornering_stiffness_n_per_rad: {:?})", 1.0 / values[0].max(1e-12))
+            }
+            "load_dependence" => format!(
+                "load_dependence(coefficient: {:?}, exponent: {:?}, reference_mass_kg: {:?})",
+                values[1],
+                1.0 + values[0],
+                values[2]
+            ),
+            "variator_loss" => {
+                format!("variator_loss(loss: {:?}, node_speeds_m_s: [{:?}])", values[0], values[1])
+            }
+            "shift_transient" => format!(
+                "shift_transient(force_n: {:?}, speeds_m_s: [{:?}], width_m_s: {:?})",
+                values[0], values[1], values[2]
+            ),
+            _ => {
+                let fields: Vec<String> = self
+                    .terms
+                    .iter()
+                    .zip(values)
+                    .map(|(term, value)| format!("{}: {value:?}", term.name))
+                    .collect();
+                format!("{}({})", self.id, fields.join(", "))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::spell;
+    use super::*;
+
+    #[test]
+    fn a_window_begins_before_it_ends() {
+        let term = |name, linear| Term { name, unit: "", scale: 1.0, linear, low: 0.0, high: f64::INFINITY };
+        let mut window = spell("drawbar_load");
+        window.terms = vec![term("force_n", true), term("from_s", false), term("to_s", false)];
+        assert!(
+            window.possible(&[2.0, 6.0]) && !window.possible(&[6.0, 2.0]) && !window.possible(&[2.0, 2.0])
+        );
+        let values = [300.0, 2.0, 6.0];
+        assert_eq!(window.within(0, &values), (f64::NEG_INFINITY, f64::INFINITY));
+        assert_eq!(window.within(1, &values).1, 4.0);
+        assert_eq!(window.within(2, &values).0, 4.0);
+        window.terms.truncate(1);
+        assert!(window.possible(&[]) && window.within(0, &[300.0]).0.is_infinite());
+    }
+}

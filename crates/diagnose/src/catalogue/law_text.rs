@@ -1,0 +1,49 @@
+//! An equation that was found, as a scenario writes it.
+
+use crate::balance::Kind;
+
+/// An equation that was found, as scenarios write it.
+#[derive(Clone, Debug)]
+pub struct LawText {
+    /// What it is in the effect `expression`.
+    pub role: &'static str,
+    /// The formula.
+    pub text: String,
+    /// Its constants, as the effect takes them.
+    pub constants_text: String,
+    /// Its constants.
+    pub constants: Vec<headland_symbolic::Constant>,
+    /// Channels that it depends on.
+    pub depends_on: Vec<&'static str>,
+    /// What the choice of it costs.
+    pub cost: f64,
+}
+
+impl LawText {
+    /// The text of a law of a balance.
+    pub fn new(law: &headland_symbolic::Law, kind: Kind) -> Self {
+        /// Every piece of it was one of about a dozen: ln of that.
+        const PER_PIECE: f64 = 2.5;
+        const CHANNELS: [(&str, &str); 7] = [
+            ("v", "speed_m_s"),
+            ("x", "position_m"),
+            ("t", "time_s"),
+            ("heading", "heading_rad"),
+            ("kappa", "curvature_per_m"),
+            ("temperature", "air_temperature_c"),
+            ("coasting", "coasting"),
+        ];
+        Self {
+            role: if kind == Kind::Motion { "resistance" } else { "auxiliary_power" },
+            text: law.text.clone(),
+            constants_text: law.constants_text(),
+            constants: law.constants.clone(),
+            depends_on: CHANNELS
+                .into_iter()
+                .filter(|(name, _)| law.names(name))
+                .map(|(_, channel)| channel)
+                .collect(),
+            cost: PER_PIECE * law.complexity as f64,
+        }
+    }
+}

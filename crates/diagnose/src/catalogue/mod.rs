@@ -1,0 +1,397 @@
+//! The causes that are tried: each names an effect of the simulator, says how its parameters are written, and how large
+//! they usually are. Catalogue: the effects and artefacts that models of field vehicles commonly leave out.
+
+mod cause;
+mod law_text;
+mod powers;
+mod sensors;
+mod term;
+
+pub use cause::{Cause, Class, Form};
+pub use law_text::LawText;
+pub use term::Term;
+
+use crate::balance::Kind;
+use cause::cause;
+use powers::powers;
+use sensors::sensors;
+use term::{MOST_SIZES, linear, positive, shape};
+
+/// What the vehicle and its runs are like, for scales and grids.
+#[derive(Clone, Debug)]
+pub struct Around {
+    /// Mass [kg].
+    pub mass_kg: f64,
+    /// Gravity [m/s²].
+    pub gravity_m_s2: f64,
+    /// Drag area [m²].
+    pub drag_area_m2: f64,
+    /// Speeds below which 20, 35, 50, 65 and 80 % of the samples lie [m/s].
+    pub speeds_m_s: [f64; 5],
+    /// Longest run [s].
+    pub duration_s: f64,
+    /// Channels that every run has.
+    pub channels: Vec<String>,
+    /// Whether force or torque drives somewhere.
+    pub drives: bool,
+    /// Mass that nominally belongs to what rotates [kg].
+    pub rotating_mass_kg: f64,
+    /// Least and greatest mass of a run [kg].
+    pub masses_kg: (f64, f64),
+    /// Resistance over weight at walking speed.
+    pub coefficient: f64,
+    /// Largest number of runs on one path.
+    pub passes: usize,
+    /// Range of the air temperature [K]; 0 where it is not known.
+    pub temperatures_k: f64,
+    /// Whether the force at the wheels is known anywhere, beyond what motion takes.
+    pub pulls: bool,
+    /// Runs that may have begun otherwise than the others, by number.
+    pub beginnings: Vec<usize>,
+}
+
+const MOTION: &[Kind] = &[Kind::Motion, Kind::Battery, Kind::Fuel];
+
+/// Begin and end of a spell that is the same in every run, in eighths of the longest.
+fn windows(duration_s: f64) -> Vec<Vec<f64>> {
+    let edge = |eighth: u8| duration_s * f64::from(eighth) / 8.0;
+    (1..7).flat_map(|from| (from + 1..=8).map(move |to| vec![edge(from), edge(to)])).collect()
+}
+
+/// A cause that works in spells of single runs.
+pub fn spell(id: &str) -> Cause {
+    let (id, words, equation, experiment) = match id {
+        "braking" => (
+            "braking",
+            "service brakes that were not recorded",
+            "F = F_b while braking",
+            "log the brake switch",
+        ),
+        _ => (
+            "drawbar_load",
+            "a pull at the hitch that was not recorded",
+            "F = F_h while it pulls",
+            "repeat without implement or trailer, or log the drawbar force",
+        ),
+    };
+    let terms = vec![positive("force_n", "N", 1000.0)];
+    cause(id, &[Kind::Motion], terms, equation, &["time_s"], words, experiment).over(Form::OverTime)
+}
+
+/// The causes that the recording could show at all.
+#[allow(clippy::too_many_lines, reason = "a table")]
+pub fn causes(around: &Around) -> Vec<Cause> {
+    let weight = around.mass_kg * around.gravity_m_s2;
+    let has = |name: &str| around.channels.iter().any(|channel| channel == name);
+    // From a tenth of the longest run to six of it, evenly in proportion.
+    let taus: Vec<Vec<f64>> = (0..7).map(|step| vec![0.1 * around.duration_s * 2f64.powi(step)]).collect();
+    // An implement can pull as much as the ground can hold.
+    let pull = positive("force_n", "N", 0.02 * weight).within(0.0, weight);
+    let mut all = vec![
+        cause(
+            "wind",
+            MOTION,
+            vec![linear("north_m_s", "m/s", 5.0), linear("east_m_s", "m/s", 5.0)],
+            "F = ½ ρ CdA (|v − w| (v − w)ₓ − v²)",
+            &["speed_m_s", "heading_rad"],
+            "a wind",
+            "repeat two runs in each direction on a calm day",
+        ),
+        cause(
+            "grade_constant",
+            &[Kind::Motion, Kind::Battery, Kind::Fuel, Kind::Parity],
+            vec![linear("grade", "1", 0.02)],
+            "F = m g sin(atan q)",
+            &["position_m"],
+            "a slope of the whole path",
+            "drive the same lane in the other direction",
+        ),
+        cause(
+            "grade",
+            &[Kind::Motion, Kind::Battery, Kind::Fuel, Kind::Parity],
+            vec![linear("grade", "1", 0.02)],
+            "F = m g sin(atan q(x))",
+            &["position_m"],
+            "slopes along the path",
+            "drive the same path in the other direction, or log elevation",
+        )
+        .over(Form::OverPosition),
+        cause(
+            "soft_ground",
+            MOTION,
+            vec![linear("coefficient", "1", 0.02).within(-around.coefficient, MOST_SIZES * 0.02)],
+            "F = Δc(x) N",
+            &["position_m"],
+            "softer ground along the path",
+            "drive the same path in the other direction, or measure the cone index along it",
+        )
+        .over(Form::OverPosition),
+        cause(
+            "rotating_inertia",
+            MOTION,
+            vec![
+                linear("rotating_mass_kg", "kg", 0.06 * around.mass_kg)
+                    .within(-around.rotating_mass_kg, 0.4 * around.mass_kg),
+            ],
+            "F = m_rot dv/dt",
+            &["acceleration_m_s2"],
+            "the inertia of rotating parts",
+            "accelerate at two different forces, or spin the wheels down on stands",
+        ),
+        cause(
+            "mass",
+            MOTION,
+            vec![
+                linear("extra_mass_kg", "kg", 0.08 * around.mass_kg)
+                    .within(-0.5 * around.mass_kg, around.mass_kg),
+            ],
+            "F = Δm (dv/dt + g (sin θ + c cos θ))",
+            &["acceleration_m_s2"],
+            "a different mass",
+            "weigh the vehicle, or repeat runs with known ballast",
+        ),
+        cause(
+            "payload_change",
+            MOTION,
+            vec![linear("mass_kg", "kg", 0.1 * around.mass_kg)],
+            "F = Δm(t) (dv/dt + g (sin θ + c cos θ))",
+            &["acceleration_m_s2", "time_s"],
+            "a load that changes on the way",
+            "weigh before and after, or log the tank's level",
+        )
+        .over(Form::OverTime),
+        cause(
+            "aerodynamic_drag",
+            MOTION,
+            vec![linear("extra_area_m2", "m²", 0.4 * around.drag_area_m2.max(0.5))],
+            "F = ½ ρ ΔCdA v²",
+            &["speed_m_s"],
+            "more aerodynamic drag",
+            "coast down from twice the speed",
+        ),
+        cause(
+            "rolling_resistance",
+            MOTION,
+            vec![linear("coefficient", "1", 0.015)],
+            "F = Δc N",
+            &[],
+            "a different level of rolling resistance",
+            "drive both directions, coasting and driven, with two masses",
+        ),
+        cause(
+            "rolling_speed_law",
+            MOTION,
+            vec![
+                linear("linear", "1", 0.015),
+                shape("reference_speed_m_s", "m/s").held(around.speeds_m_s[2].max(0.5)),
+            ],
+            "F = Δc (v/v₀ − 1) N",
+            &["speed_m_s"],
+            "rolling resistance that depends otherwise on speed",
+            "tow or coast at 2, 5, 10 and 20 km/h",
+        )
+        .shaped(vec![vec![around.speeds_m_s[2].max(0.5)]]),
+        cause(
+            "rolling_temperature",
+            MOTION,
+            vec![positive("cold_coefficient", "1", 0.01), shape("time_constant_s", "s")],
+            "F = Δc e^(−t/τ) N",
+            &["time_s"],
+            "tyres that warm up",
+            "repeat after a rest, and again without",
+        )
+        .shaped(taus.clone()),
+        cause(
+            "driveline_temperature",
+            MOTION,
+            vec![
+                linear("cold_force_n", "N", 0.006 * weight),
+                positive("cold_viscous_n_s_m", "N s/m", 0.001 * weight),
+                shape("time_constant_s", "s"),
+            ],
+            "F = (F₀ + k v) e^(−t/τ)",
+            &["time_s", "speed_m_s"],
+            "oil in the driveline that warms up",
+            "log the oil temperature; repeat with the oil warm and the tyres cold",
+        )
+        .shaped(taus.clone()),
+        cause(
+            "neutral_drag",
+            MOTION,
+            vec![linear("force_n", "N", 0.006 * weight), linear("viscous_n_s_m", "N s/m", 0.0015 * weight)],
+            "F = F₀ + k v in neutral",
+            &["coasting", "speed_m_s"],
+            "drag of the driveline in neutral",
+            "coast and drive steadily at the same speed, or spin the driveline down on stands",
+        ),
+        cause(
+            "brake_drag",
+            MOTION,
+            vec![positive("force_n", "N", 0.008 * weight)],
+            "F = F₀",
+            &[],
+            "a dragging brake",
+            "feel the hubs, or turn a free wheel by hand",
+        ),
+        cause(
+            "drawbar_load",
+            MOTION,
+            vec![pull],
+            "F = F₀",
+            &[],
+            "an implement or trailer that was not recorded",
+            "repeat without it, or log the drawbar force",
+        ),
+        cause(
+            "drawbar_load",
+            MOTION,
+            vec![
+                pull,
+                linear("linear_n_s_m", "N s/m", 0.004 * weight),
+                shape("from_s", "s"),
+                shape("to_s", "s"),
+            ],
+            "F = D₀ + D₁ v between two times",
+            &["time_s", "speed_m_s"],
+            "an implement that is down for a while",
+            "repeat without it, or log the drawbar force",
+        )
+        .shaped(windows(around.duration_s)),
+        cause(
+            "speed_threshold",
+            MOTION,
+            vec![
+                positive("force_n", "N", 0.015 * weight),
+                shape("threshold_m_s", "m/s"),
+                shape("width_m_s", "m/s"),
+            ],
+            "F = F₀ clamp((v − v₀)/b, 0, 1)",
+            &["speed_m_s"],
+            "a drag that sets in above a speed",
+            "hold speeds just below and just above",
+        )
+        .shaped(
+            around
+                .speeds_m_s
+                .iter()
+                .flat_map(|v| [vec![*v, 0.1 * v.max(0.5)], vec![*v, 0.5 * v.max(0.5)]])
+                .collect(),
+        ),
+    ];
+    if has("curvature_per_m") {
+        all.push(cause(
+            "cornering_drag",
+            MOTION,
+            vec![positive("compliance_rad_n", "rad/N", 2.0 / weight)],
+            "F = (m v² κ)² / C_α",
+            &["speed_m_s", "curvature_per_m"],
+            "drag of the tyres in curves",
+            "drive circles of two radii, both ways",
+        ));
+    }
+    if around.masses_kg.1 > 1.02 * around.masses_kg.0 {
+        all.push(
+            cause(
+                "load_dependence",
+                MOTION,
+                vec![
+                    linear("exponent_change", "1", 0.2).within(-0.7, 0.7),
+                    shape("coefficient", "1").held(around.coefficient),
+                    shape("reference_mass_kg", "kg").held(around.mass_kg),
+                ],
+                "F = c W ((W / W₀)^(β − 1) − 1)",
+                &["payload_kg"],
+                "rolling resistance that is not in proportion to the load",
+                "repeat with two masses that differ by a quarter",
+            )
+            .shaped(vec![vec![around.coefficient, around.mass_kg]]),
+        );
+    }
+    if around.passes > 2 {
+        all.push(
+            cause(
+                "multipass",
+                MOTION,
+                vec![linear("coefficient", "1", 0.03), shape("factor", "1")],
+                "F = c (fⁿ⁻¹ − 1) N",
+                &["position_m"],
+                "ground that firms with every pass",
+                "drive a fresh lane beside the old one",
+            )
+            .shaped(vec![vec![0.9], vec![0.7]]),
+        );
+    }
+    if around.drives {
+        all.push(cause(
+            "driveline_efficiency",
+            &[Kind::Motion, Kind::Battery, Kind::Fuel],
+            vec![positive("loss", "1", 0.08)],
+            "F = −λ |F_drive|",
+            &["tractive_force_n"],
+            "a loss in the driveline in proportion to its load",
+            "drive at the same speed with two loads",
+        ));
+        all.push(
+            cause(
+                "variator_loss",
+                &[Kind::Motion, Kind::Fuel],
+                vec![positive("loss", "1", 0.1), shape("node_speed_m_s", "m/s")],
+                "F = −λ |1 − v/v_n| |F_drive|",
+                &["tractive_force_n", "speed_m_s"],
+                "losses of the variator away from its mechanical points",
+                "hold steady speeds across the range at one load",
+            )
+            .shaped(around.speeds_m_s[1..4].iter().map(|v| vec![v.max(0.5)]).collect()),
+        );
+        all.push(
+            cause(
+                "shift_transient",
+                &[Kind::Motion],
+                vec![
+                    positive("force_n", "N", 0.03 * weight),
+                    shape("speed_m_s", "m/s"),
+                    shape("width_m_s", "m/s"),
+                ],
+                "F = F₀ e^(−½((v − v_s)/b)²)",
+                &["speed_m_s"],
+                "losses while ranges are shifted",
+                "ramp slowly up and down through the shift",
+            )
+            .shaped(around.speeds_m_s.iter().map(|v| vec![*v, 0.05 * v.max(1.0)]).collect()),
+        );
+    }
+    if around.temperatures_k > 3.0 {
+        all.push(
+            cause(
+                "rolling_temperature",
+                MOTION,
+                vec![
+                    shape("cold_coefficient", "1").held(0.0),
+                    shape("time_constant_s", "s").held(600.0),
+                    linear("coefficient_per_k", "1/K", 3e-4),
+                    shape("reference_temperature_c", "°C").held(20.0),
+                ],
+                "F = k (T₀ − T) N",
+                &["air_temperature_c"],
+                "rolling resistance that rises in the cold",
+                "repeat on a warm day",
+            )
+            .shaped(vec![vec![0.0, 600.0, 20.0]]),
+        );
+        all.push(
+            cause(
+                "auxiliary_power",
+                &[Kind::Battery, Kind::Fuel],
+                vec![positive("freezing_power_w", "W", 1500.0), shape("balance_temperature_c", "°C")],
+                "P = P₀ max(0, 1 − T/T₀)",
+                &["air_temperature_c"],
+                "a heater that works by the temperature outside",
+                "repeat with the heater off",
+            )
+            .shaped(vec![vec![15.0], vec![20.0]]),
+        );
+    }
+    powers(&mut all, around);
+    sensors(&mut all, around);
+    all
+}

@@ -1,0 +1,71 @@
+//! What takes power and makes no force.
+
+use super::Around;
+use super::cause::{Cause, Form, cause};
+use super::term::{linear, positive, shape};
+use crate::balance::Kind;
+
+/// Adds what the drive of this vehicle could be missing.
+pub fn powers(all: &mut Vec<Cause>, around: &Around) {
+    all.push(cause(
+        "auxiliary_power",
+        &[Kind::Battery, Kind::Fuel],
+        vec![positive("power_w", "W", 1000.0)],
+        "P = P₀",
+        &[],
+        "a consumer that is always on",
+        "stand with the drive on, and switch consumers one by one",
+    ));
+    all.push(
+        cause(
+            "auxiliary_power",
+            &[Kind::Battery, Kind::Fuel],
+            vec![positive("power_w", "W", 1500.0).within(0.0, f64::INFINITY)],
+            "P = P(t)",
+            &["time_s"],
+            "a consumer that is switched with time",
+            "log the current of heater, fan and hydraulics",
+        )
+        .over(Form::OverTime),
+    );
+    all.push(cause(
+        "battery_resistance",
+        &[Kind::Voltage],
+        vec![linear("resistance_ohm", "ohm", 0.1)],
+        "P = ΔR I², U = U₀ − (R + ΔR) I",
+        &["battery_current_a"],
+        "a different resistance of the battery",
+        "draw a step of current at rest and log the voltage",
+    ));
+    all.push(cause(
+        "engine_friction",
+        &[Kind::Fuel],
+        vec![linear("torque_n_m", "N m", 30.0)],
+        "P = T ω / e",
+        &["engine_speed_rad_s"],
+        "more friction of the engine",
+        "motor the engine, or idle at two speeds",
+    ));
+    // An engine that was driven just before starts warm, so that often one run alone starts cold.
+    let once = around.beginnings.iter().map(|run| Some(*run));
+    for run in std::iter::once(None).chain(once) {
+        let cold = cause(
+            "cold_start",
+            &[Kind::Fuel],
+            vec![positive("cold_torque_n_m", "N m", 30.0), shape("time_constant_s", "s")],
+            "P = T e^(−t/τ) ω / e",
+            &["time_s", "engine_speed_rad_s"],
+            if run.is_some() {
+                "an engine that starts cold in one of the runs"
+            } else {
+                "an engine that starts cold"
+            },
+            "repeat the cycle with the engine warm",
+        )
+        .shaped([60.0, 150.0, 400.0, 900.0].iter().map(|tau| vec![*tau]).collect());
+        all.push(match run {
+            Some(run) => cold.in_run(run),
+            None => cold,
+        });
+    }
+}

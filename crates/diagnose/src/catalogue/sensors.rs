@@ -1,0 +1,69 @@
+//! Faults of sensors that a model can tell.
+
+use super::Around;
+use super::cause::{Cause, cause};
+use super::term::{Term, linear, positive};
+use crate::balance::Kind;
+
+/// Adds the faults that these channels can have.
+pub fn sensors(all: &mut Vec<Cause>, around: &Around) {
+    let artefact = |id, balances, term: Term, equation, words, experiment| {
+        cause(id, balances, vec![term], equation, &[], words, experiment).artefact()
+    };
+    if around.drives {
+        all.push(
+            artefact(
+                "latency",
+                &[Kind::Motion],
+                linear("latency_s", "s", 0.1).within(-1.5, 3.0),
+                "y(t) = x(t − δ)",
+                "speed that arrives late",
+                "brake once hard with an accelerometer beside it",
+            )
+            // A late signal is not linear in its latency, so it is tried at several.
+            .shaped(vec![vec![0.05], vec![0.2], vec![0.6], vec![-0.2]]),
+        );
+        all.push(artefact(
+            "force_scale",
+            &[Kind::Motion, Kind::Battery],
+            linear("scale", "1", 0.05),
+            "F_measured = (1 + k) F",
+            "a force sensor with a wrong scale",
+            "hang a known weight on it, or tow with a load cell",
+        ));
+    }
+    all.push(artefact(
+        "speed_scale",
+        &[Kind::Motion, Kind::Slip, Kind::Battery],
+        linear("scale", "1", 0.03),
+        "v_measured = (1 + k) v",
+        "a speed sensor with a wrong scale",
+        "drive a measured mile",
+    ));
+    all.push(artefact(
+        "accelerometer_bias",
+        &[Kind::Parity],
+        linear("bias_m_s2", "m/s²", 0.15),
+        "f_measured = f + b",
+        "an accelerometer with an offset",
+        "stand level, and turn around on the spot",
+    ));
+    all.push(artefact(
+        "accelerometer_tilt",
+        &[Kind::Parity],
+        linear("tilt_rad", "rad", 0.015),
+        "f_measured = f + g sin ε",
+        "an accelerometer that is mounted at a tilt",
+        "stand level, and turn around on the spot",
+    ));
+    all.push(cause(
+        "wheel_slip",
+        &[Kind::Slip],
+        // Where an implement may pull and nobody knows how much, the motion tells of a part of the force only.
+        vec![positive("coefficient", "1", if around.pulls { 0.15 } else { 0.4 })],
+        "s = k F / N",
+        &["tractive_force_n"],
+        "slip of the driven wheels",
+        "pull two loads at one speed",
+    ));
+}

@@ -1,0 +1,62 @@
+//! A parameter of a cause: its unit, what is usual, what it can be.
+
+/// A parameter of a cause.
+#[derive(Clone, Copy, Debug)]
+pub struct Term {
+    /// As the effect names it.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// One standard deviation of what is usual.
+    pub scale: f64,
+    /// Whether the cause is proportional to it.
+    pub linear: bool,
+    /// Least that it can be.
+    pub low: f64,
+    /// Most that it can be.
+    pub high: f64,
+}
+
+/// An effect so many times its usual size is none of this kind.
+pub const MOST_SIZES: f64 = 8.0;
+
+pub fn linear(name: &'static str, unit: &'static str, scale: f64) -> Term {
+    Term { name, unit, scale, linear: true, low: -MOST_SIZES * scale, high: MOST_SIZES * scale }
+}
+
+pub fn positive(name: &'static str, unit: &'static str, scale: f64) -> Term {
+    Term { low: 0.0, ..linear(name, unit, scale) }
+}
+
+pub fn shape(name: &'static str, unit: &'static str) -> Term {
+    Term { name, unit, scale: 1.0, linear: false, low: 0.0, high: f64::INFINITY }
+}
+
+impl Term {
+    /// The factor of a law that has its amplitudes in it.
+    pub fn amplitude() -> Self {
+        linear("amplitude", "1", 1.0)
+    }
+
+    /// The factor of a formula that the author of a scenario wrote.
+    pub fn amount() -> Self {
+        linear("amount", "1", 1.0)
+    }
+
+    /// A parameter that a cause is in proportion to, of a usual size, where its effect lets it be.
+    pub fn of_size(name: &'static str, unit: &'static str, scale: f64, low: f64, high: f64) -> Self {
+        let term = linear(name, unit, scale);
+        let (low, high) = (term.low.max(low), term.high.min(high));
+        term.within(low, high)
+    }
+
+    /// Held where it is.
+    pub fn held(self, value: f64) -> Self {
+        self.within(value, value)
+    }
+
+    /// With other limits.
+    pub fn within(self, low: f64, high: f64) -> Self {
+        Self { low, high, ..self }
+    }
+}

@@ -175,6 +175,11 @@ impl System {
         system
     }
 
+    /// How many rows there are.
+    pub fn row_count(&self) -> usize {
+        self.chunks.iter().map(|chunk| chunk.rows.len()).sum()
+    }
+
     /// The balance of a chunk.
     pub fn kind(&self, chunk: &Chunk) -> Kind {
         self.kinds[chunk.balance]

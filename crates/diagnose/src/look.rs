@@ -31,8 +31,7 @@ impl Look {
     /// Looks once more, after the recordings were corrected or others of their samples are usable.
     pub fn again(&mut self, case: &mut Case, usable: &[Vec<bool>]) -> Result<(), DiagnoseError> {
         let (system, mut pool) = prepared(case, usable)?;
-        let rows: usize = system.chunks.iter().map(|chunk| chunk.rows.len()).sum();
-        self.found = if rows > MANY_ROWS {
+        self.found = if system.row_count() > MANY_ROWS {
             case.step("searching on")?;
             let parts = again(case, &system, &mut pool, &self.found.stand.parts)?;
             let state = State { case, system: &system, pool: &pool, fit: &case.fit };

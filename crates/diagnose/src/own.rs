@@ -4,7 +4,7 @@
 use crate::DiagnoseError;
 use crate::balance::{Kind, change};
 use crate::case::Case;
-use crate::catalogue::{Cause, Class, Form, Term};
+use crate::catalogue::{CHANNELS, Cause, Class, Form, Term};
 use crate::recorded::{Recorded, SLOWEST_M_S};
 use crate::said::Said;
 use headland_plugin::{Bound, Card, Parameter, Registry};
@@ -32,16 +32,6 @@ impl Own {
 
 /// The formulas of the effect `expression`.
 const FORMULAS: [&str; 4] = ["resistance", "force", "auxiliary_power", "shaft_power"];
-/// Channels that the variables of a formula are read from.
-const CHANNELS: [(&str, &str); 7] = [
-    ("v", "speed_m_s"),
-    ("x", "position_m"),
-    ("t", "time_s"),
-    ("heading", "heading_rad"),
-    ("kappa", "curvature_per_m"),
-    ("temperature", "air_temperature_c"),
-    ("coasting", "coasting"),
-];
 /// What would show a cause of which nothing else is known.
 const EXPERIMENT: &str = "repeat the run where the effect would be stronger, and where it would be weaker";
 

@@ -3,11 +3,11 @@
 
 use crate::balance::{Kind, System, block_s};
 use crate::events::{self, Event, Spot, Stretches};
+use crate::gram::Column;
 use crate::look::{Look, MANY_ROWS};
 use crate::search::{Accepted, Found, search_without, worth};
 use crate::state::{Stand, State};
 use crate::{Case, DiagnoseError, unlisted};
-use nalgebra::DVector;
 
 /// Spells in single runs are set aside, and what every run has in common is looked for once more without them.
 pub fn spells(
@@ -64,8 +64,7 @@ fn loud(case: &Case, look: &Look) -> Vec<Event> {
 fn quiet(case: &mut Case, look: &Look) -> Result<Vec<Event>, DiagnoseError> {
     /// As much as any other cause takes that no other run shows.
     const LEAST: f64 = 20.0;
-    let rows: usize = look.system.chunks.iter().map(|chunk| chunk.rows.len()).sum();
-    if rows > MANY_ROWS || !look.system.has(Kind::Motion) {
+    if look.system.row_count() > MANY_ROWS || !look.system.has(Kind::Motion) {
         return Ok(Vec::new());
     }
     let state = State { case, system: &look.system, pool: &look.pool, fit: &case.fit };
@@ -117,13 +116,14 @@ impl State<'_> {
             if spots.is_empty() {
                 break;
             }
-            let without = less(self.system, &spots);
+            let residual = with(self.system.residual.clone(), -1.0, &spots);
+            let without = System { residual, ..self.system.clone() };
             let beside = State { system: &without, ..*self };
             let stand = beside.settle(&start.parts, &noises)?;
             let fitted = events::joined(spots.clone()).iter().filter(|event| self.fit[event.run]).count();
             let score = worth(&stand) - PER_SPELL * fitted as f64;
-            left = left_with(&stand, &spots);
             noises = if round < QUIET { beside.quiet(&stand) } else { stand.noises };
+            left = with(stand.left, 1.0, &spots);
             if best.as_ref().is_none_or(|(other, _)| score > *other) {
                 best = Some((score, spots));
             } else if round > QUIET {
@@ -137,21 +137,10 @@ impl State<'_> {
     }
 }
 
-/// What a set leaves of every row, spells still in it.
-fn left_with(stand: &Stand, spots: &[Spot]) -> Vec<DVector<f64>> {
-    let mut left = stand.left.clone();
-    for spot in spots {
-        left[spot.chunk].rows_mut(spot.rows.0, spot.rows.1 - spot.rows.0).add_scalar_mut(spot.event.force_n);
+/// Rows with so many times the spells added.
+fn with(mut rows: Column, times: f64, spots: &[Spot]) -> Column {
+    for Spot { chunk, rows: (from, to), event } in spots {
+        rows[*chunk].rows_mut(*from, to - from).add_scalar_mut(times * event.force_n);
     }
-    left
-}
-
-/// The rows without what spells explain.
-fn less(system: &System, spots: &[Spot]) -> System {
-    let mut without = system.clone();
-    for spot in spots {
-        let mut rows = without.residual[spot.chunk].rows_mut(spot.rows.0, spot.rows.1 - spot.rows.0);
-        rows.add_scalar_mut(-spot.event.force_n);
-    }
-    without
+    rows
 }

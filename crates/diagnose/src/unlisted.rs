@@ -46,17 +46,13 @@ pub fn unlisted(
             let cause = &case.causes[part.trial.cause];
             kind != Kind::Motion && cause.form == Form::OverTime && cause.balances.contains(&kind)
         });
-        let any = any && rows(system) > MANY_ROWS;
+        let any = any && system.row_count() > MANY_ROWS;
         if system.has(kind) && !any {
             case.step("unlisted causes")?;
             found = beside(case, system, pool, found, (kind, target))?;
         }
     }
     Ok(found)
-}
-
-fn rows(system: &System) -> usize {
-    system.chunks.iter().map(|chunk| chunk.rows.len()).sum()
 }
 
 fn beside(
@@ -70,31 +66,31 @@ fn beside(
     let mut candidates: Vec<Vec<Part>> = Vec::new();
     // Of many rows a formula takes long to find, and where functions are needed none does by itself.
     let functions = listed.iter().any(|part| part.spread.is_some());
-    let rows = rows(system);
+    let rows = system.row_count();
     let per_unit = if kind == Kind::Fuel { fuel_per_watt(case, system)? } else { 1.0 };
-    let kind = Sought { kind, target, per_unit };
+    let sought = Sought { kind, target, per_unit };
     let mut starts = if functions && rows > MANY_ROWS { Vec::new() } else { vec![Vec::new()] };
     if !listed.is_empty() {
         starts.push(listed);
     }
     for start in starts {
-        let Some(mut law) = law(case, system, pool, &start, &found.stand.noises, kind)? else {
+        let Some(mut law) = law(case, system, pool, &start, &found.stand.noises, sought)? else {
             continue;
         };
         if is_map(&law) {
             continue;
         }
-        let mut part = add(case, system, pool, &law, kind);
+        let mut part = add(case, system, pool, &law, sought);
         // Once more with the noise that is left then: what was fitted to the whole mismatch hides slow laws.
         let state = State { case, system, pool, fit: &case.fit };
         let with = |part: &Part| start.iter().cloned().chain([part.clone()]).collect::<Vec<Part>>();
         if let Some(settled) = state.settle(&with(&part), &found.stand.noises)
             && (rows <= MANY_ROWS || worth(&settled) > worth(&found.stand))
-            && let Some(better) = self::law(case, system, pool, &start, &settled.noises, kind)?
+            && let Some(better) = self::law(case, system, pool, &start, &settled.noises, sought)?
             && !is_map(&better)
         {
             law = better;
-            part = add(case, system, pool, &law, kind);
+            part = add(case, system, pool, &law, sought);
         }
         candidates.push(with(&part));
         candidates.push(vec![part]);
@@ -114,13 +110,14 @@ fn beside(
         for stand in [more, Some(stand)].into_iter().flatten() {
             let simpler = stand.parts.len() < found.stand.parts.len();
             let more = worth(&stand) - worth(&found.stand);
+            let clearly = more > margin(&found, simpler);
             let able = !state.impossible(&stand.parts, &stand.estimate)
-                && (more > margin(&found, simpler) || simpler && more > -TOLERANCE)
+                && (clearly || simpler && more > -TOLERANCE)
                 && state.works_widely(&stand)
                 && (simpler || !state.is_listed(&stand))
                 && state.sensible(&stand)
                 && state.keeps_to_priors(&stand, &found.stand);
-            if able && more > margin(&found, simpler) && better(&stand, &best) {
+            if able && clearly && better(&stand, &best) {
                 best = Some(stand);
             } else if able && better(&stand, &as_good) {
                 as_good = Some(stand);

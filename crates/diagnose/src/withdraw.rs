@@ -5,7 +5,7 @@ use crate::catalogue::Form;
 use crate::contradiction::withhold;
 use crate::events::Event;
 use crate::faults::Fault;
-use crate::prove::{Errors, Proof, prove, told_by};
+use crate::prove::{Proof, prove, told_by};
 use crate::refine::{Refined, refine, spells};
 use crate::search::Found;
 use crate::state::{Part, State};
@@ -77,8 +77,8 @@ pub fn proven(
         withdrawn = true;
     }
     for place in (0..best.found.stand.parts.len()).rev() {
-        if let Some(lesser) = without_idle_law(case, system, pool, &best, events, place)? {
-            best = Proven::of(case, system, pool, lesser, events, by)?;
+        if let Some(lesser) = without_idle_law(case, system, pool, &best, (events, by), place)? {
+            best = lesser;
             withdrawn = true;
         }
     }
@@ -95,21 +95,22 @@ fn without_idle_law(
     system: &System,
     pool: &mut Pool,
     best: &Proven,
-    events: &[Event],
+    (events, by): (&[Event], Option<Kind>),
     place: usize,
-) -> Result<Option<Found>, DiagnoseError> {
+) -> Result<Option<Proven>, DiagnoseError> {
     let trial = &best.found.stand.parts[place].trial;
     let cause = &case.causes[trial.cause];
     let kind = system.kinds.iter().copied().find(|kind| cause.law.is_some() && kind.among(cause.balances));
     let (Some(kind), Some(found)) = (kind, without(case, system, pool, &best.found, place)) else {
         return Ok(None);
     };
-    let with = Proven::of(case, system, pool, best.found.clone(), events, Some(kind))?.proof.held_out;
-    let lesser = Proven::of(case, system, pool, found.clone(), events, Some(kind))?.proof.held_out;
-    let least = |with: Errors, lesser: Errors| lesser.after.min(with.before);
-    let idle =
-        with.zip(lesser).is_some_and(|(with, lesser)| with.after > (1.0 - RISES) * least(with, lesser));
-    Ok(idle.then_some(found))
+    let lesser = Proven::of(case, system, pool, found, events, by)?;
+    let held_out = |one: &Proven| prove(case, system, &one.refined, Some(kind)).map(|proof| proof.held_out);
+    let (with, without) = (held_out(best)?, held_out(&lesser)?);
+    let idle = with
+        .zip(without)
+        .is_some_and(|(with, without)| with.after > (1.0 - RISES) * without.after.min(with.before));
+    Ok(idle.then_some(lesser))
 }
 
 /// What is said where everything was taken back.

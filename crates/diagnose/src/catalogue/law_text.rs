@@ -2,6 +2,17 @@
 
 use crate::balance::Kind;
 
+/// Channels that the variables of a formula are read from.
+pub const CHANNELS: [(&str, &str); 7] = [
+    ("v", "speed_m_s"),
+    ("x", "position_m"),
+    ("t", "time_s"),
+    ("heading", "heading_rad"),
+    ("kappa", "curvature_per_m"),
+    ("temperature", "air_temperature_c"),
+    ("coasting", "coasting"),
+];
+
 /// An equation that was found, as scenarios write it.
 #[derive(Clone, Debug)]
 pub struct LawText {
@@ -24,15 +35,6 @@ impl LawText {
     pub fn new(law: &headland_symbolic::Law, kind: Kind) -> Self {
         /// Every piece of it was one of about a dozen: ln of that.
         const PER_PIECE: f64 = 2.5;
-        const CHANNELS: [(&str, &str); 7] = [
-            ("v", "speed_m_s"),
-            ("x", "position_m"),
-            ("t", "time_s"),
-            ("heading", "heading_rad"),
-            ("kappa", "curvature_per_m"),
-            ("temperature", "air_temperature_c"),
-            ("coasting", "coasting"),
-        ];
         Self {
             role: if kind == Kind::Motion { "resistance" } else { "auxiliary_power" },
             text: law.text.clone(),

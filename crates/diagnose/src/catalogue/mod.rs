@@ -8,7 +8,7 @@ mod sensors;
 mod term;
 
 pub use cause::{Cause, Class, Form};
-pub use law_text::LawText;
+pub use law_text::{CHANNELS, LawText};
 pub use term::Term;
 
 use crate::balance::Kind;

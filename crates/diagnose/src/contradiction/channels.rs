@@ -9,6 +9,9 @@ use headland_units::constants::STANDARD_GRAVITY_M_S2;
 
 /// Windows over which positions and speeds are held against each other [s].
 const WINDOW_S: f64 = 5.0;
+/// Windows over which forces and powers are [s]: within them a coarse speed climbs one of its steps at most, which no sample
+/// by itself can be asked.
+const SECOND_S: f64 = 1.0;
 /// Speed and position contradict each other where they differ by more than this share in most windows: no scale of a
 /// sensor is that wrong.
 const APART: f64 = 0.3;
@@ -44,23 +47,21 @@ pub fn positions(case: &Case) -> Option<String> {
         let trace = &drive.measured.trace;
         let (Some(position), time_s) = (trace.get("position_m"), trace.time_s()) else { continue };
         let speed = &drive.motion.value;
-        let (mut windows, mut bad) = (0, 0);
+        let (mut told, mut bad) = (0, 0);
         let mut own = Vec::new();
-        let mut from = 0;
-        while let Some(to) = (from + 1..time_s.len()).find(|to| time_s[*to] - time_s[from] >= WINDOW_S) {
+        for (from, to) in windows(time_s, WINDOW_S) {
             let far: f64 = (from..to)
                 .map(|i| 0.5 * (speed[i] + speed[i + 1]) * (time_s[i + 1] - time_s[i]))
                 .sum::<f64>()
                 .abs();
             let moved = (position[to] - position[from]).abs();
             if far.is_finite() && moved.is_finite() && far.max(moved) > SHORTEST_M {
-                windows += 1;
+                told += 1;
                 bad += usize::from((far - moved).abs() > APART * far.max(moved));
                 own.push(moved / far.max(1e-3));
             }
-            from = to;
         }
-        if 2 * bad > windows {
+        if 2 * bad > told {
             runs.push(&drive.measured.id);
             ratios.push(median(&own));
         }
@@ -126,7 +127,7 @@ fn faster_than_driven<'a>(
         let time_s = drive.measured.trace.time_s();
         let mut lasts_s = 0.0;
         let mut slopes = Vec::new();
-        for (from, to) in windows(time_s) {
+        for (from, to) in windows(time_s, SECOND_S) {
             let forces: Option<Vec<f64>> = (from..to).map(|i| force(drive, i)).collect();
             let Some(forces) = forces else { continue };
             let mean = |of: &dyn Fn(usize) -> f64| (from..to).map(of).sum::<f64>() / (to - from) as f64;
@@ -146,13 +147,11 @@ fn faster_than_driven<'a>(
     (runs, steepest)
 }
 
-/// Windows of a second and more, one after the other: first sample and the one behind the last. Within them a coarse speed
-/// climbs one of its steps at most, which no sample by itself can be asked.
-fn windows(time_s: &[f64]) -> Vec<(usize, usize)> {
-    const LONG_S: f64 = 1.0;
+/// Windows of so long and little more [s], one after the other: first sample and the one behind the last.
+fn windows(time_s: &[f64], long_s: f64) -> Vec<(usize, usize)> {
     let mut all = Vec::new();
     let mut from = 0;
-    while let Some(to) = (from + 1..time_s.len()).find(|to| time_s[*to] - time_s[from] >= LONG_S) {
+    while let Some(to) = (from + 1..time_s.len()).find(|to| time_s[*to] - time_s[from] >= long_s) {
         all.push((from, to));
         from = to;
     }
@@ -280,7 +279,7 @@ pub fn powers(case: &Case) -> Option<String> {
         else {
             continue;
         };
-        for (from, to) in windows(drive.measured.trace.time_s()) {
+        for (from, to) in windows(drive.measured.trace.time_s(), SECOND_S) {
             let mean = |of: &dyn Fn(usize) -> f64| (from..to).map(of).sum::<f64>() / (to - from) as f64;
             let moved = mean(&|i| force[i] * drive.motion.value[i]);
             let drawn = mean(&|i| battery[i]);

@@ -69,7 +69,10 @@ impl Step<'_> {
             own.damping_j += lasts_s * (wheel.touch.load_n - elastic_n) * (pressing_m_s - squeezing_m_s);
             if let Some(strut) = wheel.strut {
                 let springing_n = strut.stiffness_n_m * strut.squeezed_m;
-                own.suspension_j += lasts_s * (wheel.touch.load_n - springing_n) * squeezing_m_s;
+                own.suspension_j += lasts_s * (wheel.carried_n() - springing_n) * squeezing_m_s;
+                if let Some(hub) = strut.unsprung {
+                    stepped.slope_j += lasts_s * hub.weight_n * wheel.touch.normal.z * hub.squeezing_m_s;
+                }
             }
         }
         stepped

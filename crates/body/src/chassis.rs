@@ -98,6 +98,9 @@ pub struct Suspension {
     pub stiffness_n_m: f64,
     /// Of each side, more than 0 [N s/m].
     pub damping_n_s_m: f64,
+    /// Mass of the wheels of each side and what moves with them, part of that of the vehicle [kg]; 0 where it goes with the
+    /// chassis.
+    pub unsprung_mass_kg: f64,
 }
 
 impl Chassis {
@@ -133,6 +136,15 @@ impl Chassis {
         if self.steering.mode == SteeringMode::Front && (ahead == 0 || ahead == axles.list().len()) {
             let expected = "axles ahead of the centre of gravity and behind it";
             return refuse("steering", "Front".to_owned(), expected);
+        }
+        if let SteeringMode::Crab { angle_rad } = self.steering.mode
+            && angle_rad.abs() > self.steering.limit_rad
+        {
+            let expected = format!(
+                "at most `limit_rad`, {}, either way: wheels turn no further",
+                self.steering.limit_rad
+            );
+            return refuse("steering.mode", format!("a crab of {angle_rad} rad"), &expected);
         }
         self.trailer.as_ref().map_or(Ok(()), Trailer::check)
     }

@@ -32,9 +32,7 @@ pub enum BodyError {
         position_m: f64,
     },
     /// The step would not be stable.
-    #[error(
-        "`step_s` is {found_s}, expected at most {longest_s:.1e}: {what} swings or settles too fast for a longer step"
-    )]
+    #[error("`step_s` is {found_s}, expected at most {longest_s:.1e}: {what} too fast for a longer step")]
     Step {
         /// The step that was asked for [s].
         found_s: f64,
@@ -57,13 +55,16 @@ pub enum BodyError {
     },
     /// A wheel is in the ground.
     #[error(
-        "{wheel} would start {depth_m:.2} m below the ground; its tyre gives way by {most_m:.2} m at the most"
+        "{wheel} would start {depth_m:.2} m below the ground, with {load_kn:.0} kN on it; its tyre gives way by {most_m:.2} m \
+         at the most"
     )]
     BelowGround {
         /// Which wheel.
         wheel: String,
         /// How deep [m].
         depth_m: f64,
+        /// What it would carry there [kN].
+        load_kn: f64,
         /// Height of the tyre's section [m].
         most_m: f64,
     },
@@ -73,6 +74,22 @@ pub enum BodyError {
     )]
     NothingTowed,
     /// It finds no rest on its wheels.
-    #[error("the vehicle does not stand on its wheels where it is to start: it would turn over")]
+    #[error(
+        "the vehicle finds no rest on its wheels where it is to start: on such ground it would turn over, or its mass and \
+         inertia do not belong to its springs"
+    )]
     NoRest,
+    /// It would start beside its path.
+    #[error("`position_m` is {found_m}, expected {from_m:.1} to {to_m:.1}: there the path begins and ends")]
+    OffThePath {
+        /// Where it was to start [m].
+        found_m: f64,
+        /// Where the path begins [m].
+        from_m: f64,
+        /// Where it ends [m].
+        to_m: f64,
+    },
+    /// The axles do not suit a rigid body.
+    #[error(transparent)]
+    Axles(Refusal),
 }

@@ -68,9 +68,9 @@ fn of_wheel(wheel: &Wheel, place_m: [f64; 3]) -> Hub {
 pub fn hubs(model: &Model, chassis: &Chassis) -> Result<Vec<Hub>, BodyError> {
     let axles = model.axles.as_ref().ok_or(BodyError::NoAxles)?;
     chassis.check(axles)?;
-    let weight_n = model.vehicle.mass_kg * model.gravity_m_s2;
+    let mass = (model.vehicle.mass_kg, model.gravity_m_s2);
     let hub = |wheel: &Wheel| {
         of_wheel(wheel, [wheel.arm.x, wheel.arm.y, wheel.arm.z + axles.centre_of_gravity_height_m])
     };
-    Ok(wheels(axles, chassis, weight_n).iter().map(hub).collect())
+    Ok(wheels(axles, chassis, mass).iter().map(hub).collect())
 }

@@ -11,6 +11,7 @@ mod accounts;
 mod chassis;
 mod error;
 mod ground;
+mod hop;
 mod hub;
 mod pace;
 mod rig;

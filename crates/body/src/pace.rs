@@ -2,8 +2,8 @@
 //!
 //! dt² k / m + 2 dt c / m < 4          Euler's half-implicit rule on m x″ + c x′ + k x = 0
 //!
-//! Source: Jury's conditions on the two eigenvalues of one step. Looked at are bounce, roll and pitch on the tyres, and the
-//! turning of each shaft against its tyres.
+//! Source: Jury's conditions on the two eigenvalues of one step. Looked at are bounce, roll and pitch on the tyres, the
+//! turning of each shaft against its tyres, and hubs between tyre and suspension; and that no wheel leaves its footprint in a step.
 
 use crate::BodyError;
 use crate::spin::Spin;
@@ -27,7 +27,7 @@ pub(crate) fn check(
     spin: &Spin,
     soil: &dyn Soil,
     carried: Carried,
-    step_s: f64,
+    (step_s, speed_m_s): (f64, f64),
 ) -> Result<(), BodyError> {
     let sum = |weigh: &dyn Fn(&Wheel) -> f64| {
         wheels.iter().fold((0.0, 0.0), |(k, c), wheel| {
@@ -35,14 +35,23 @@ pub(crate) fn check(
         })
     };
     let per = |(k, c): (f64, f64), inertia: f64| (k / inertia, c / inertia);
+    // What hops below its suspension is not carried by it.
+    let hopping = |arm: &dyn Fn(&Wheel) -> f64| -> f64 {
+        let own = |wheel: &Wheel| wheel.strut.and_then(|strut| strut.unsprung).map_or(0.0, |own| own.mass_kg);
+        wheels.iter().map(|wheel| arm(wheel) * own(wheel)).sum()
+    };
+    let body = |arm: &dyn Fn(&Wheel) -> f64, inertia: f64| per(sum(arm), inertia - hopping(arm));
     let mut fastest = vec![
-        ("the bounce on the tyres", per(sum(&|_| 1.0), carried.mass_kg)),
-        ("the roll on the tyres", per(sum(&|wheel| wheel.arm.y * wheel.arm.y), carried.roll_kg_m2)),
-        ("the pitch on the tyres", per(sum(&|wheel| wheel.arm.x * wheel.arm.x), carried.pitch_kg_m2)),
+        ("the bounce on the tyres swings", body(&|_| 1.0, carried.mass_kg)),
+        ("the roll on the tyres swings", body(&|wheel| wheel.arm.y * wheel.arm.y, carried.roll_kg_m2)),
+        ("the pitch on the tyres swings", body(&|wheel| wheel.arm.x * wheel.arm.x, carried.pitch_kg_m2)),
     ];
     for (wheel, strut) in wheels.iter().filter_map(|wheel| Some((wheel, wheel.strut?))) {
-        let rate = (wheel.stiffness_n_m + strut.stiffness_n_m) / (wheel.damping_n_s_m + strut.damping_n_s_m);
-        fastest.push(("a suspension against its tyre", (0.0, rate)));
+        let between = (wheel.stiffness_n_m + strut.stiffness_n_m, wheel.damping_n_s_m + strut.damping_n_s_m);
+        fastest.push(match strut.unsprung {
+            Some(own) => ("a hub between tyre and suspension hops", per(between, own.mass_kg)),
+            None => ("a suspension settles against its tyre", (0.0, between.0 / between.1)),
+        });
     }
     for (mass_kg, turning) in spin.shafts() {
         let (k, c) = turning.iter().fold((0.0, 0.0), |(k, c), (index, lead)| {
@@ -50,12 +59,15 @@ pub(crate) fn check(
             let own = lead * lead * gripping_n(wheel, soil) / wheel.body.relaxation_length_m;
             (k + own, c + own * wheel.damping_n_s_m / wheel.stiffness_n_m)
         });
-        fastest.push(("a wheel that turns against its tyre", per((k, c), mass_kg)));
+        fastest.push(("a wheel turns against its tyre", per((k, c), mass_kg)));
     }
     let longest = |(k, c): (f64, f64)| SAFE * 4.0 / (c + (c * c + 4.0 * k).sqrt());
+    let rolls =
+        wheels.iter().map(|wheel| ("a wheel rolls past its footprint", wheel.footprint_m / speed_m_s.abs()));
     let (what, longest_s) = fastest
         .into_iter()
         .map(|(what, swing)| (what, longest(swing)))
+        .chain(rolls)
         .fold(("nothing", f64::INFINITY), |least, one| if one.1 < least.1 { one } else { least });
     if step_s > longest_s {
         return Err(BodyError::Step { found_s: step_s, longest_s, what });

@@ -9,20 +9,27 @@ use crate::BodyError;
 use crate::accounts::Own;
 use crate::chassis::Chassis;
 use crate::ground::Ground;
+use crate::hop;
 use crate::pace::{self, Carried};
 use crate::spin::Spin;
 use crate::standing::{Weight, stand};
 use crate::steer::Steer;
 use crate::track::{Track, yaw_of};
-use crate::wheel::{Scene, Wheel};
+use crate::wheel::{Scene, Touch, Wheel};
 use crate::world::{State, World, properties};
-use headland_plugin::Soil;
+use headland_plugin::{Refusal, Soil};
 use headland_sim::{Axles, Model, Push, Start};
+use rapier3d_f64::math::Matrix;
 use rapier3d_f64::prelude::Vector;
 pub(crate) use towed::Towed;
 
 pub(crate) use contact::wheels;
 use contact::{deflection_m, touch};
+
+/// A driver looks where the vehicle goes once it goes faster than it rocks at rest [m/s].
+const LOOKS_ROUND_M_S: f64 = 0.05;
+/// A start so far beyond an end of the path is the rounding of one [m].
+const ROUNDING_M: f64 = 1e-6;
 
 /// A vehicle in motion.
 #[derive(Debug)]
@@ -40,6 +47,11 @@ pub(crate) struct Rig<'a> {
     track: Track<'a>,
     state: State,
     mass_kg: f64,
+    /// Inverse of the inertia, and whether wheels have masses of their own.
+    inverse: Matrix,
+    hops: bool,
+    /// Whether the driver looks back.
+    backward: bool,
     /// How much of the resistances acts, and which way.
     way: f64,
     resting: bool,
@@ -57,6 +69,13 @@ impl<'a> Rig<'a> {
         let axles = model.axles.as_ref().ok_or(BodyError::NoAxles)?;
         let soil = model.soil.as_deref().ok_or(BodyError::NoSoil)?;
         chassis.check(axles)?;
+        if let Some(index) = axles.list().iter().position(|axle| axle.wheels > 1 && axle.track_m <= 0.0) {
+            return Err(BodyError::Axles(Refusal {
+                parameter: format!("axles.{index}.track_m"),
+                found: axles.list()[index].track_m.to_string(),
+                expected: "more than 0: a rigid body would fall over".to_owned(),
+            }));
+        }
         let mass_kg = model.vehicle.mass_kg;
         let rotating_kg = model.vehicle.rotating_mass_kg;
         for (name, found) in [("mass_kg", mass_kg), ("rotating_mass_kg", rotating_kg)] {
@@ -64,9 +83,21 @@ impl<'a> Rig<'a> {
                 return Err(BodyError::NotPositive { name, found });
             }
         }
+        if let Some((from_m, to_m)) = model
+            .terrain
+            .extent_m()
+            .filter(|(from_m, to_m)| !(*from_m - ROUNDING_M..=*to_m + ROUNDING_M).contains(&start.position_m))
+        {
+            return Err(BodyError::OffThePath { found_m: start.position_m, from_m, to_m });
+        }
         let ground = Ground::of(&*model.terrain, start.position_m)?;
         let weight_n = mass_kg * model.gravity_m_s2;
-        let mut wheels = wheels(axles, chassis, weight_n);
+        let mut wheels = wheels(axles, chassis, (mass_kg, model.gravity_m_s2));
+        let inertias = (
+            ("roll_inertia_kg_m2", chassis.roll_inertia_kg_m2),
+            ("pitch_inertia_kg_m2", chassis.pitch_inertia_kg_m2),
+        );
+        hop::check(&wheels, Vector::ZERO, (mass_kg, inertias.0, inertias.1), "axles.")?;
         let mut steer = Steer::new(chassis.steering, axles);
         steer.start();
         let track = Track::at(&*model.terrain, start.position_m);
@@ -81,13 +112,14 @@ impl<'a> Rig<'a> {
         for wheel in &wheels {
             let most_m = wheel.tyre.section_height_m;
             if wheel.touch.deflection_m > most_m {
-                let depth_m = wheel.touch.deflection_m;
-                return Err(BodyError::BelowGround { wheel: wheel.told.clone(), depth_m, most_m });
+                let Touch { deflection_m: depth_m, load_n, .. } = wheel.touch;
+                let (wheel, load_kn) = (wheel.told.clone(), 1e-3 * load_n);
+                return Err(BodyError::BelowGround { wheel, depth_m, load_kn, most_m });
             }
         }
         let velocity = along_path(&track) * start.speed_m_s;
-        let mut world =
-            World::new(pose, properties(chassis, mass_kg, height_m, mass_kg), velocity, model.gravity_m_s2);
+        let own = properties(chassis, mass_kg, height_m, mass_kg);
+        let mut world = World::new(pose, own, velocity, model.gravity_m_s2);
         let tyres: Vec<(usize, f64)> = wheels.iter().map(|wheel| (wheel.axle, wheel.tyres)).collect();
         let spin = Spin::new(axles, chassis, &tyres, rotating_kg, start.speed_m_s);
         let carried = Carried {
@@ -95,9 +127,9 @@ impl<'a> Rig<'a> {
             roll_kg_m2: chassis.roll_inertia_kg_m2,
             pitch_kg_m2: chassis.pitch_inertia_kg_m2,
         };
-        pace::check(&wheels, &spin, soil, carried, step_s)?;
+        pace::check(&wheels, &spin, soil, carried, (step_s, start.speed_m_s))?;
         if let Some(towed) = &mut towed {
-            towed.check_step(step_s)?;
+            towed.check_step(step_s, start.speed_m_s)?;
             let standing = world.state();
             towed.couple(&mut world, &ground, (&standing, hitch), start.speed_m_s)?;
         }
@@ -109,6 +141,9 @@ impl<'a> Rig<'a> {
             ground,
             state: world.state(),
             world,
+            inverse: own.reconstruct_inverse_inertia_matrix(),
+            hops: hop::any(&wheels),
+            backward: start.speed_m_s < 0.0,
             wheels,
             spin,
             towed,
@@ -221,7 +256,9 @@ impl<'a> Rig<'a> {
             }
             let before_j = self.world.kinetic_j();
             let height_m = self.axles.centre_of_gravity_height_m;
-            self.world.load(properties(self.chassis, self.model.vehicle.mass_kg, height_m, mass_kg));
+            let laden = properties(self.chassis, self.model.vehicle.mass_kg, height_m, mass_kg);
+            self.inverse = laden.reconstruct_inverse_inertia_matrix();
+            self.world.load(laden);
             self.mass_kg = mass_kg;
             self.state = self.world.state();
             gained_j += self.world.kinetic_j() - before_j;
@@ -233,9 +270,14 @@ impl<'a> Rig<'a> {
         let axes = (self.state.ahead(), self.state.left());
         let from =
             self.state.point(Vector::new(self.steer.pivot_m, 0.0, -self.axles.centre_of_gravity_height_m));
-        let far_m = self.steer.look_ahead_m() + self.steer.pivot_m;
+        let speed_m_s = self.state.speed_m_s();
+        if speed_m_s.abs() > LOOKS_ROUND_M_S {
+            self.backward = speed_m_s < 0.0;
+        }
+        let way = if self.backward { -1.0 } else { 1.0 };
+        let far_m = self.steer.pivot_m + way * self.steer.look_ahead_m();
         let aim = self.track.aim(from, axes, far_m, self.steer.aslant_rad());
-        self.steer.turn(aim, step_s);
+        self.steer.turn(aim, way, step_s);
     }
 
     /// The point of the vehicle that stands for its place: on the ground below its own centre of gravity.

@@ -72,7 +72,7 @@ pub(crate) fn stand(
             let hub = origin + turn * wheel.arm;
             let (height_m, normal) = Wheel::above(hub, &below(ground, wheel, hub, axes[0])?);
             let deflection_m = 0.5 * wheel.tyre.diameter_m - height_m - wheel.sinkage_m;
-            wheel.stand(deflection_m);
+            wheel.stand(deflection_m, normal.z);
             wheel.touch.height_m = height_m;
             let load_n = wheel.touch.load_n;
             let point = hub - normal * height_m;

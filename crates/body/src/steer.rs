@@ -6,6 +6,7 @@
 //! Sources: Coulter, *Implementation of the Pure Pursuit Path Tracking Algorithm* (1992); Ackermann's condition, as in
 //! Mitschke and Wallentowitz, *Dynamik der Kraftfahrzeuge* (2014), chapter D. x₀ is where the axle that does not steer
 //! stands, or the middle of a vehicle whose axles all do.
+//! A driver who goes backward aims at a point of the path behind; the circle through it is the same formula.
 //! Wheels turn no further and no faster than the steering lets them.
 
 use crate::chassis::{Steering, SteeringMode};
@@ -75,13 +76,15 @@ impl Steer {
         self.aslant_rad = -self.aslant_rad();
     }
 
-    /// Turns the wheels for one step.
-    pub fn turn(&mut self, aim: Aim, step_s: f64) {
+    /// Turns the wheels for one step of a vehicle that goes ahead (`way` 1) or backward (−1).
+    pub fn turn(&mut self, aim: Aim, way: f64, step_s: f64) {
         let Steering { limit_rad, rate_rad_s, .. } = self.steering;
         let far_m = aim.ahead_m.hypot(aim.left_m);
         let (curvature, aslant_rad) = match self.steering.mode {
             SteeringMode::Front | SteeringMode::All => (2.0 * aim.left_m / (far_m * far_m), 0.0),
-            SteeringMode::Crab { .. } => (2.0 * aim.off_rad / far_m, aim.left_m.atan2(aim.ahead_m)),
+            SteeringMode::Crab { .. } => {
+                (way * 2.0 * aim.off_rad / far_m, (way * aim.left_m).atan2(way * aim.ahead_m))
+            }
         };
         let most = rate_rad_s * step_s;
         let toward =

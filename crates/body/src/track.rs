@@ -37,13 +37,13 @@ impl<'a> Track<'a> {
         }
     }
 
-    /// The point ahead that the driver aims at, seen from a point of the vehicle.
+    /// The point that the driver aims at, `far_m` ahead, or behind where that is less than 0, seen from a point of the vehicle.
     pub fn aim(&self, from: Vector, (ahead, left): (Vector, Vector), far_m: f64, aslant_rad: f64) -> Aim {
         let wanted_m = self.position_m + far_m;
-        let end_m = self.terrain.extent_m().map_or(wanted_m, |(_, end_m)| end_m);
-        let place = self.terrain.at(wanted_m.min(end_m));
-        // Behind its end the path goes on straight.
-        let beyond_m = (wanted_m - end_m).max(0.0);
+        let known_m = self.terrain.extent_m().map_or(wanted_m, |(from_m, to_m)| wanted_m.clamp(from_m, to_m));
+        let place = self.terrain.at(known_m);
+        // Beyond its ends the path goes on straight.
+        let beyond_m = wanted_m - known_m;
         let (sin, cos) = place.heading_rad.sin_cos();
         let to =
             Vector::new(place.east_m + beyond_m * sin - from.x, place.north_m + beyond_m * cos - from.y, 0.0);

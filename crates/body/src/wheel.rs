@@ -10,9 +10,10 @@
 //! u and v are the velocity of the vehicle at the ground, along and across the wheel, w the speed at which it rolls.
 //! Sources: Pacejka, *Tire and Vehicle Dynamics* (2012), chapter 7 (single contact point with relaxation) and chapter 4
 //! (similarity, the bound of combined forces); the soil's own for G. Tread and carcass damp slip with the time constant c / k
-//! of the tyre. The ground is its mean over the footprint. Leaves out the mass of the wheel apart from the chassis, camber, and the moment that turns a wheel back.
+//! of the tyre. The ground is its mean over the footprint. Leaves out camber, and the moment that turns a wheel back.
 
-use crate::chassis::AxleBody;
+use crate::chassis::{AxleBody, Suspension};
+use crate::hop::Unsprung;
 use headland_plugin::{Contact, Place, Soil, Spot, Tyre, WheelContact};
 use rapier3d_f64::prelude::Vector;
 
@@ -58,7 +59,7 @@ pub(crate) struct Wheel<'a> {
 
 /// A suspension and how far it is squeezed.
 ///
-/// k δ + c dδ/dt = k_s x + c_s dx/dt        tyre and suspension carry the same load: the hub has no mass of its own
+/// k δ + c dδ/dt = k_s x + c_s dx/dt        tyre and suspension carry the same load, where the hub has no mass of its own
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Strut {
     pub stiffness_n_m: f64,
@@ -66,7 +67,26 @@ pub(crate) struct Strut {
     /// On level ground, where the hub has its place in the axes of the vehicle [m].
     pub level_m: f64,
     pub squeezed_m: f64,
+    /// How fast it was squeezed in the mean of a step [m/s].
     pub rate_m_s: f64,
+    /// The mass of its hub; `None` where that goes with the chassis.
+    pub unsprung: Option<Unsprung>,
+}
+
+impl Strut {
+    /// A suspension at rest on level ground under the load of its tyres.
+    pub fn level(own: Suspension, load_n: f64, gravity_m_s2: f64) -> Self {
+        let weight_n = own.unsprung_mass_kg * gravity_m_s2;
+        let level_m = (load_n - weight_n) / own.stiffness_n_m;
+        let unsprung = (own.unsprung_mass_kg > 0.0).then(|| Unsprung {
+            mass_kg: own.unsprung_mass_kg,
+            weight_n,
+            carried_n: load_n - weight_n,
+            ..Unsprung::default()
+        });
+        let Suspension { stiffness_n_m, damping_n_s_m, .. } = own;
+        Self { stiffness_n_m, damping_n_s_m, level_m, squeezed_m: level_m, rate_m_s: 0.0, unsprung }
+    }
 }
 
 /// Where a wheel meets the ground.
@@ -148,12 +168,20 @@ impl Wheel<'_> {
         let mut load_n = k * deflection_m + c * closing_m_s;
         if let Some(strut) = &mut self.strut {
             let springing_n = strut.stiffness_n_m * strut.squeezed_m;
-            strut.rate_m_s = if deflection_m > 0.0 {
-                (load_n - springing_n) / (strut.damping_n_s_m + c)
+            if let Some(own) = &mut strut.unsprung {
+                let before = self.touch.normal;
+                own.turned = if before == Vector::ZERO { before } else { normal - before };
+                own.body_m_s = moving.dot(normal);
+                own.carried_n = springing_n + strut.damping_n_s_m * own.squeezing_m_s;
+                load_n -= c * own.squeezing_m_s;
             } else {
-                -springing_n / strut.damping_n_s_m
-            };
-            load_n = springing_n + strut.damping_n_s_m * strut.rate_m_s;
+                strut.rate_m_s = if deflection_m > 0.0 {
+                    (load_n - springing_n) / (strut.damping_n_s_m + c)
+                } else {
+                    -springing_n / strut.damping_n_s_m
+                };
+                load_n = springing_n + strut.damping_n_s_m * strut.rate_m_s;
+            }
         }
         let load_n = if deflection_m > 0.0 { load_n.max(0.0) } else { 0.0 };
         self.touch = Touch {
@@ -222,8 +250,21 @@ impl Wheel<'_> {
 
     /// Force of the ground on the vehicle in the point where they meet [N], what resists apart.
     pub fn force_n(&self) -> Vector {
-        let Touch { normal, along, across, load_n, .. } = self.touch;
-        normal * load_n + along * self.felt.gross_n + across * self.felt.side_n
+        let Touch { normal, along, across, .. } = self.touch;
+        normal * self.pressing_n() + along * self.felt.gross_n + across * self.felt.side_n
+    }
+
+    /// What presses the vehicle along the normal [N]: the load, or what the suspension carries and the weight of its hub.
+    fn pressing_n(&self) -> f64 {
+        match self.strut.and_then(|strut| strut.unsprung) {
+            Some(own) => own.carried_n + own.weight_n * self.touch.normal.z,
+            None => self.touch.load_n,
+        }
+    }
+
+    /// What its suspension carries [N].
+    pub fn carried_n(&self) -> f64 {
+        self.strut.and_then(|strut| strut.unsprung).map_or(self.touch.load_n, |own| own.carried_n)
     }
 
     /// How much higher the hub is in the axes of the vehicle than on level ground [m].
@@ -237,12 +278,16 @@ impl Wheel<'_> {
         self.strut.map_or(k, |strut| k * strut.stiffness_n_m / (k + strut.stiffness_n_m))
     }
 
-    /// Stands at rest where the ground is so far above the tyre of a hub at its place [m]: takes its load, and squeezes.
-    pub fn stand(&mut self, above_m: f64) {
+    /// Stands at rest where the ground is so far above the tyre of a hub at its place [m]: takes its load, and squeezes. Of the
+    /// weight of the hub the part `upright` presses along the normal of the ground.
+    pub fn stand(&mut self, above_m: f64, upright: f64) {
         let level_m = self.strut.map_or(0.0, |strut| strut.level_m);
-        let load_n = (self.standing_n_m() * (above_m + level_m)).max(0.0);
+        let unsprung = self.strut.and_then(|strut| strut.unsprung);
+        let hub_n = unsprung.map_or(0.0, |own| own.weight_n * upright);
+        let lowered_m = self.strut.map_or(0.0, |strut| hub_n / strut.stiffness_n_m);
+        let load_n = (self.standing_n_m() * (above_m + level_m + lowered_m)).max(0.0);
         if let Some(strut) = &mut self.strut {
-            strut.squeezed_m = load_n / strut.stiffness_n_m;
+            strut.squeezed_m = (load_n - hub_n) / strut.stiffness_n_m;
         }
         self.touch.load_n = load_n;
         self.touch.deflection_m = above_m - self.raised_m();
@@ -252,7 +297,8 @@ impl Wheel<'_> {
     pub fn settle(&mut self, step_s: f64) {
         self.sinkage_m += step_s * self.sinking_m_s;
         if let Some(strut) = &mut self.strut {
-            strut.squeezed_m += step_s * strut.rate_m_s;
+            // The hub's own motion is half-implicit, as that of the body.
+            strut.squeezed_m += step_s * strut.unsprung.map_or(strut.rate_m_s, |own| own.squeezing_m_s);
         }
     }
 

@@ -76,6 +76,7 @@ pub struct AxleBodyFile {
 pub struct SuspensionFile {
     pub stiffness_n_m: f64,
     pub damping_n_s_m: f64,
+    pub unsprung_mass_kg: Option<f64>,
 }
 
 /// What simulates a scenario.
@@ -137,7 +138,7 @@ pub const BOUNDS: [(&str, Bound); 9] = [
 ];
 
 /// Bounds of those of each of its axles.
-pub const AXLE_BOUNDS: [(&str, Bound); 7] = [
+pub const AXLE_BOUNDS: [(&str, Bound); 8] = [
     ("damping_n_s_m", Bound::NotNegative),
     ("friction", Bound::Within(0.01, 3.0)),
     ("slip_stiffness", Bound::Positive),
@@ -145,10 +146,15 @@ pub const AXLE_BOUNDS: [(&str, Bound); 7] = [
     ("relaxation_length_m", Bound::Within(0.01, 10.0)),
     ("suspension.stiffness_n_m", Bound::Positive),
     ("suspension.damping_n_s_m", Bound::Positive),
+    ("suspension.unsprung_mass_kg", Bound::NotNegative),
 ];
 
 pub fn suspension(file: Option<&SuspensionFile>) -> Option<Suspension> {
-    file.map(|own| Suspension { stiffness_n_m: own.stiffness_n_m, damping_n_s_m: own.damping_n_s_m })
+    file.map(|own| Suspension {
+        stiffness_n_m: own.stiffness_n_m,
+        damping_n_s_m: own.damping_n_s_m,
+        unsprung_mass_kg: own.unsprung_mass_kg.unwrap_or(0.0),
+    })
 }
 
 /// The body of a vehicle; `None` where it has none.
@@ -258,11 +264,17 @@ fn refused(document: &Document, error: &BodyError) -> ScenarioError {
         BodyError::NothingTowed => "vehicle.body.trailer".to_owned(),
         BodyError::NotPositive { name, .. } => format!("vehicle.{name}"),
         BodyError::Chassis(refusal) => format!("vehicle.body.{}", refusal.parameter),
+        BodyError::Axles(refusal) => format!("vehicle.{}", refusal.parameter),
+        BodyError::OffThePath { .. } => "start.position_m".to_owned(),
         BodyError::Step { .. } => "simulation.step_s".to_owned(),
         BodyError::OffTheMap { .. } | BodyError::BelowGround { .. } | BodyError::NoRest => "start".to_owned(),
         BodyError::NoSoil | BodyError::NoSurface { .. } => "ground.terrain".to_owned(),
     };
-    let node = document.find(&path).or_else(|| document.find("ground.terrain"));
+    // What is not written has its place in what it would stand in.
+    let around =
+        std::iter::successors(Some(path.as_str()), |path| path.rsplit_once('.').map(|(around, _)| around));
+    let node =
+        around.into_iter().find_map(|path| document.find(path)).or_else(|| document.find("ground.terrain"));
     ScenarioError::Body {
         error: error.clone(),
         at: document.location(node.map_or(0, |node| node.span.start)),

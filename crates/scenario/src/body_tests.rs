@@ -82,6 +82,36 @@ fn what_cannot_be_is_refused_where_it_stands() {
         "differential: Open, suspension: (stiffness_n_m: 3e5, damping_n_s_m: 0))",
     );
     assert!(spring.contains("`damping_n_s_m` is 0, expected more than 0"), "{spring}");
+    let hub = told(
+        "differential: Open)",
+        "differential: Open, suspension: (stiffness_n_m: 3e5, damping_n_s_m: 1e4, unsprung_mass_kg: -5))",
+    );
+    assert!(
+        hub.contains("`unsprung_mass_kg` is -5, expected 0 or more") && hub.contains("test.ron:18"),
+        "{hub}"
+    );
+    let heavy = told(
+        "differential: Open)",
+        "differential: Open, suspension: (stiffness_n_m: 3e5, damping_n_s_m: 1e4, unsprung_mass_kg: 5000))",
+    );
+    assert!(
+        heavy.contains("`axles.0.suspension.unsprung_mass_kg` is 5000") && heavy.contains("test.ron:18"),
+        "{heavy}"
+    );
+    let crab = told("mode: Front", "mode: Crab(angle_rad: 2)");
+    assert!(crab.contains("a crab of 2 rad") && crab.contains("test.ron:14:30"), "{crab}");
+    let line = told("track_m: 2.1", "track_m: 0");
+    assert!(line.contains("`axles.0.track_m` is 0") && line.contains("test.ron:6"), "{line}");
+    let beyond = told(
+        "terrain: Flat",
+        "terrain: Profile(heading_rad: 0, points: [(position_m: 1, elevation_m: 0), (position_m: 60, elevation_m: 0)])",
+    );
+    assert!(
+        beyond.contains("`position_m` is 0, expected 1.0 to 60.0") && beyond.contains("test.ron:27"),
+        "{beyond}"
+    );
+    let fast = told("speed_m_s: 5", "speed_m_s: 500");
+    assert!(fast.contains("a wheel rolls past its footprint") && fast.contains("test.ron:29"), "{fast}");
     let friction = told("friction: 0.8", "friction: -0.8");
     assert!(friction.contains("`friction` is -0.8, expected 0.01 to 3"), "{friction}");
     let weightless = told("mass_kg: 13000, rotating_mass_kg: 900", "mass_kg: 13000, rotating_mass_kg: 0");

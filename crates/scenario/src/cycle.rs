@@ -265,7 +265,8 @@ impl Plan<'_> {
                 Phase::Follow { profile: self.follow(piece, times_s, speeds_m_s, file)? }
             }
             PhaseFile::Drive { speed_m_s, acceleration_m_s2, tolerance_m_s, .. } => {
-                not_negative("speed_m_s", speed_m_s)?;
+                // Below 0 it is backward.
+                not_negative("speed_m_s", speed_m_s.abs())?;
                 positive("acceleration_m_s2", acceleration_m_s2)?;
                 if let Some(tolerance) = tolerance_m_s {
                     positive("tolerance_m_s", tolerance)?;

@@ -37,6 +37,8 @@ pub(crate) enum Command {
 pub(crate) struct Given {
     /// Where the path is driven towards its start from [m]; positions then count what was travelled.
     pub reversed_from_m: Option<f64>,
+    /// Whether a vehicle at rest is to set off backward.
+    pub backward: bool,
     pub sin_slope: Option<f64>,
     pub heading_rad: Option<f64>,
     pub curvature_per_m: Option<f64>,
@@ -140,7 +142,11 @@ impl Asked<'_> {
     /// Direction of the motion; forward at rest.
     #[inline(always)]
     pub fn way(&self) -> f64 {
-        if self.direction == 0.0 { 1.0 } else { self.direction }
+        match self.direction {
+            0.0 if self.given.backward => -1.0,
+            0.0 => 1.0,
+            moving => moving,
+        }
     }
 
     /// What the brakes take [N]: what a driver who moves gets more than was wanted, and everything at rest.
@@ -149,7 +155,9 @@ impl Asked<'_> {
         match self.command {
             Command::Accelerate(_) | Command::Push(_) if self.direction != 0.0 => more_n().max(0.0),
             // A driver who wants to stand still keeps a foot on the brake.
-            Command::Accelerate(wanted) | Command::Push(wanted) if wanted <= 0.0 => f64::INFINITY,
+            Command::Accelerate(wanted) | Command::Push(wanted) if wanted * self.way() <= 0.0 => {
+                f64::INFINITY
+            }
             _ => 0.0,
         }
     }

@@ -73,6 +73,8 @@ pub(crate) struct Running<'a> {
     pub cycle: &'a Cycle,
     extent_m: Option<(f64, f64)>,
     pub target_m_s: f64,
+    /// Whether the driver has engaged the reverse.
+    pub backward: bool,
     pub setting: Setting,
     driven: Vec<Driven>,
     /// What was found of each group that has a guard.
@@ -103,6 +105,7 @@ impl<'a> Running<'a> {
             cycle,
             extent_m: model.terrain.extent_m(),
             target_m_s: start.speed_m_s,
+            backward: false,
             setting: Setting::default(),
             driven: Vec::new(),
             entered: BTreeMap::new(),
@@ -231,6 +234,7 @@ impl<'a> Running<'a> {
             Some((from_m, to_m))
                 if !(from_m - LOCATED_M..=to_m + LOCATED_M).contains(&self.machine.position_m()) =>
             {
+                let [from_m, to_m] = [from_m, to_m].map(in_millimetres);
                 Err(format!("the path ends: it runs from {from_m} m to {to_m} m"))
             }
             _ => Ok(()),
@@ -264,6 +268,11 @@ pub(crate) fn sliver(left_s: f64, step_s: f64) -> f64 {
 
 /// A row is due this early, as a part of the time between two: so many roundings of steps are no step more.
 pub(crate) const ON_TIME: f64 = 1.0 - 1e-6;
+
+/// A length as people read it, to the millimetre [m].
+fn in_millimetres(length_m: f64) -> f64 {
+    (1e3 * length_m).round() / 1e3
+}
 
 /// A path that is driven to its very end is left by the rounding of a located end [m].
 const LOCATED_M: f64 = 1e-6;

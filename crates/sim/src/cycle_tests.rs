@@ -2,7 +2,7 @@
 
 use crate::physics_tests::{drive, last, tractor};
 use crate::{End, EngineSpeed, Guard, Model, Named, Outcome, Phase, Pi, Setting, Until};
-use headland_plugin::{Load, Mode, Place, Situation, State, Task, Terrain};
+use headland_plugin::{Delivery, Demand, Driveline, Load, Mode, Place, Situation, State, Task, Terrain};
 
 /// A tank that takes and gives 80 kg/s, pulls 500 N where it works, and holds a tonne.
 #[derive(Debug)]
@@ -91,6 +91,87 @@ fn ends_by_place_by_mark_and_by_payload_are_met_within_the_step() {
     // (333.3 − 100) kg / 80 kg/s.
     assert!((outcome.phases[0].to_s / 2.916_25 - 1.0).abs() < 1e-12);
     assert!((last(&outcome, "tank_payload_kg") / 333.3 - 1.0).abs() < 1e-12);
+}
+
+/// A drive for forward and backward.
+#[derive(Debug)]
+struct BothWays;
+
+impl Driveline for BothWays {
+    fn losses(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    fn source(&self) -> &'static str {
+        "store"
+    }
+
+    fn rotating_mass_kg(&self, _: bool) -> f64 {
+        100.0
+    }
+
+    fn deliver(&self, demand: &Demand, _: &[f64], _: &mut [f64]) -> Delivery {
+        let drives = !demand.coasting && demand.force_n * demand.speed_m_s >= 0.0;
+        let force_n = if drives { demand.force_n } else { 0.0 };
+        Delivery { force_n, source_power_w: force_n * demand.speed_m_s, ..Delivery::NOTHING }
+    }
+}
+
+fn both_ways() -> Model {
+    Model { driveline: Box::new(BothWays), ..with_tank() }
+}
+
+fn back_until(until: Until) -> Phase {
+    Phase::Drive { speed_m_s: -2.0, acceleration_m_s2: 0.5, tolerance_m_s: None, until }
+}
+
+fn halt() -> Phase {
+    Phase::Drive { speed_m_s: 0.0, acceleration_m_s2: 0.5, tolerance_m_s: None, until: Until::Stopped }
+}
+
+/// A speed below 0 is backward: places lie behind, speeds are risen to and fallen to by their size.
+#[test]
+fn backward_places_lie_behind_and_a_rest_is_a_rest() {
+    for (until, expected) in [
+        (Until::Position(25.0), 25.0),
+        (Until::Travelled(12.5), 33.5),
+        (Until::PathEnd, 0.0),
+        // 1² / (2 · 0.5) m from rest to 1 m/s.
+        (Until::SpeedAbove(1.0), 45.0),
+    ] {
+        // 42 m and 2² / (2 · 0.5) m to stop.
+        let forward = vec![
+            Phase::Drive {
+                speed_m_s: 2.0,
+                acceleration_m_s2: 0.5,
+                tolerance_m_s: None,
+                until: Until::Position(42.0),
+            },
+            halt(),
+        ];
+        let phases = forward.into_iter().chain([back_until(until)]).map(|phase| at_work(Mode::Rest, phase));
+        let outcome = drive(&both_ways(), 0.0, 0.1, phases.collect());
+        assert_eq!(outcome.end, End::Finished, "{expected}");
+        assert!((last(&outcome, "position_m") - expected).abs() < 1e-6, "{expected}: {:?}", outcome.phases);
+        assert!(outcome.ledger.relative_residual() < 1e-6, "{:?}", outcome.ledger);
+    }
+    let coasting = Phase::Coast { until: Until::Stopped };
+    let outcome = drive(&tractor(f64::INFINITY, 6.0), -3.0, 0.1, vec![coasting]);
+    assert!(outcome.trace.duration_s() > 1.0 && last(&outcome, "speed_m_s") == 0.0, "{:?}", outcome.phases);
+}
+
+#[test]
+fn a_vehicle_stops_before_it_goes_backward_and_knows_no_marks_there() {
+    let refused = |speed_m_s: f64, phases: Vec<Phase>| {
+        let phases = phases.into_iter().map(|phase| at_work(Mode::Rest, phase)).collect();
+        reason(&drive(&both_ways(), speed_m_s, 0.1, phases)).2.to_owned()
+    };
+    let told = refused(2.0, vec![back_until(Until::Travelled(5.0))]);
+    assert!(told.contains("still rolls forward at 2.00 m/s"), "{told}");
+    let told = refused(0.0, vec![back_until(Until::Position(30.0))]);
+    assert!(told.contains("30 m, which lies 30.0 m ahead of a vehicle that drives backward"), "{told}");
+    let told = refused(0.0, vec![back_until(Until::Mark("post".to_owned()))]);
+    assert!(told.contains("marks are looked for ahead"), "{told}");
 }
 
 #[test]

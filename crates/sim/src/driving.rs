@@ -23,15 +23,17 @@ impl Running<'_> {
             EngineSpeed::Kept(speed) => (*speed, None),
             EngineSpeed::Over(points) => (0.0, Some(Reference::along(begin_s, points))),
         };
+        let backward = self.backward;
         move |time_s| {
             let engine_speed_rad_s = over.as_ref().map_or(kept, |over| over.speed_m_s(time_s));
-            Given { engine_speed_rad_s, ..Given::default() }
+            Given { engine_speed_rad_s, backward, ..Given::default() }
         }
     }
 
     /// Drives a phase; says what ended it.
     pub(crate) fn drive(&mut self, phase: &Phase) -> Result<String, String> {
         let begin_s = self.machine.time_s;
+        self.backward = matches!(phase, Phase::Hold { .. }) && self.target_m_s < 0.0;
         match phase {
             Phase::Reach { speed_m_s, acceleration_m_s2 } => self.reach(*speed_m_s, *acceleration_m_s2),
             Phase::Hold { for_s } => {
@@ -121,7 +123,7 @@ impl Running<'_> {
         result.map(|_| ending.told(&self.machine.moment()))
     }
 
-    /// Comes to a speed and keeps it.
+    /// Comes to a speed and keeps it; one below 0 is backward.
     fn drive_at(
         &mut self,
         target: f64,
@@ -130,12 +132,20 @@ impl Running<'_> {
         until: &Until,
     ) -> Result<String, String> {
         let speed = self.machine.speed_m_s();
-        let mut ending = Ending::of(until, &self.machine)?;
+        if target < 0.0 && speed > 0.0 {
+            return Err(format!(
+                "the vehicle is to drive backward, and still rolls forward at {speed:.2} m/s: it has to stop first"
+            ));
+        }
+        let way = if target < 0.0 || (target == 0.0 && speed < 0.0) { -1.0 } else { 1.0 };
+        self.backward = way < 0.0;
+        let mut ending = Ending::toward(until, &self.machine, way < 0.0)?;
         self.target_m_s = target;
         if target == 0.0 {
-            if speed > 0.0 {
+            if speed != 0.0 {
                 let given = self.given();
-                let control = |at: &Moment| (Command::Accelerate(-acceleration_m_s2), given(at.time_s));
+                let slowing = -way * acceleration_m_s2;
+                let control = |at: &Moment| (Command::Accelerate(slowing), given(at.time_s));
                 let rests = |machine: &Machine, _: &Instant| (machine.speed_m_s() == 0.0).then(String::new);
                 match self.until(&control, &ending, f64::INFINITY, &rests) {
                     Err(reason) if reason.is_empty() => {}
@@ -150,9 +160,9 @@ impl Running<'_> {
         }
         let reference = Reference::ramp(self.machine.time_s, speed, target, acceleration_m_s2);
         self.follow(&reference, &ending, &|machine, instant| {
-            let behind = reference.speed_m_s(machine.time_s) - machine.speed_m_s();
+            let behind = way * (reference.speed_m_s(machine.time_s) - machine.speed_m_s());
             let stalled =
-                machine.speed_m_s() == 0.0 && instant.acceleration_m_s2 <= 0.0 && behind > 0.0;
+                machine.speed_m_s() == 0.0 && way * instant.acceleration_m_s2 <= 0.0 && behind > 0.0;
             let force = instant.delivery.force_n;
             if stalled {
                 return Some(format!(

@@ -17,7 +17,8 @@ pub(crate) struct Ending {
 enum Measure {
     Time(f64),
     Speed { than: f64, way: f64 },
-    Place(f64),
+    Place { end_m: f64, way: f64 },
+    Rest { way: f64 },
     State { index: usize, than: f64, way: f64 },
 }
 
@@ -29,7 +30,8 @@ impl Measure {
             // The step is cut to meet times.
             Self::Time(_) => f64::INFINITY,
             Self::Speed { than, way } => way * (at.speed_m_s - than),
-            Self::Place(end_m) => end_m - at.position_m,
+            Self::Place { end_m, way } => way * (end_m - at.position_m),
+            Self::Rest { way } => way * at.speed_m_s,
             Self::State { index, than, way } => way * (at.states[index] - than),
         }
     }
@@ -47,8 +49,16 @@ impl Ending {
     /// # Errors
     /// Why it can never come, in a sentence.
     pub fn of(until: &Until, machine: &Machine) -> Result<Self, String> {
+        Self::toward(until, machine, machine.speed_m_s() < 0.0)
+    }
+
+    /// The same for a machine that is to go forward or backward.
+    ///
+    /// # Errors
+    /// As [`Ending::of`].
+    pub fn toward(until: &Until, machine: &Machine, backward: bool) -> Result<Self, String> {
         let mut ending = Self::never();
-        ending.add(until, machine, true)?;
+        ending.add(until, machine, (true, backward))?;
         Ok(ending)
     }
 
@@ -59,7 +69,7 @@ impl Ending {
     pub fn conditions(when: &[Until], machine: &Machine) -> Result<Self, String> {
         let mut ending = Self::never();
         for condition in when {
-            ending.add(condition, machine, false)?;
+            ending.add(condition, machine, (false, machine.speed_m_s() < 0.0))?;
         }
         Ok(ending)
     }
@@ -79,8 +89,15 @@ impl Ending {
         Self { end_s: f64::INFINITY, measures: Vec::new(), words: Vec::new() }
     }
 
-    fn add(&mut self, until: &Until, machine: &Machine, strict: bool) -> Result<(), String> {
-        let ahead = |end_m: f64, here_m: f64| if strict { ahead(end_m, here_m) } else { Ok(end_m) };
+    /// Nothing lies behind in a `strict` phase; one that goes `backward` has its places behind and its speeds below 0.
+    fn add(
+        &mut self,
+        until: &Until,
+        machine: &Machine,
+        (strict, backward): (bool, bool),
+    ) -> Result<(), String> {
+        let way = if backward { -1.0 } else { 1.0 };
+        let ahead = |end_m: f64, here_m: f64| if strict { ahead(end_m, here_m, way) } else { Ok(end_m) };
         let (now_s, here_m) = (machine.time_s, machine.position_m());
         let (measure, words) = match until {
             Until::Any(ends) => {
@@ -88,17 +105,18 @@ impl Ending {
                     |end: &&Until| !matches!(end, Until::Mark(name) if next_mark_m(machine, name).is_none());
                 let mut come = ends.iter().filter(gone).peekable();
                 if come.peek().is_none() {
-                    return ends.first().map_or(Ok(()), |end| self.add(end, machine, strict));
+                    return ends.first().map_or(Ok(()), |end| self.add(end, machine, (strict, backward)));
                 }
-                return come.try_for_each(|end| self.add(end, machine, strict));
+                return come.try_for_each(|end| self.add(end, machine, (strict, backward)));
             }
-            Until::Stopped => (Measure::Speed { than: 0.0, way: 1.0 }, "the vehicle rests".to_owned()),
+            Until::Stopped => (Measure::Rest { way }, "the vehicle rests".to_owned()),
             Until::SpeedBelow(than) => {
-                (Measure::Speed { than: *than, way: 1.0 }, format!("its speed has fallen to {than:.2} m/s"))
+                (Measure::Speed { than: way * than, way }, format!("its speed has fallen to {than:.2} m/s"))
             }
-            Until::SpeedAbove(than) => {
-                (Measure::Speed { than: *than, way: -1.0 }, format!("its speed has risen to {than:.2} m/s"))
-            }
+            Until::SpeedAbove(than) => (
+                Measure::Speed { than: way * than, way: -way },
+                format!("its speed has risen to {than:.2} m/s"),
+            ),
             Until::Elapsed(for_s) => (Measure::Time(now_s + for_s), format!("after {for_s} s")),
             Until::Time(end_s) => {
                 if strict && now_s - end_s > PASSED_S {
@@ -109,21 +127,31 @@ impl Ending {
                 }
                 (Measure::Time(*end_s), format!("at {end_s} s"))
             }
-            Until::Travelled(far_m) => (Measure::Place(here_m + far_m), format!("after {far_m} m")),
-            Until::Position(end_m) => (Measure::Place(ahead(*end_m, here_m)?), format!("at {end_m} m")),
+            Until::Travelled(far_m) => {
+                (Measure::Place { end_m: here_m + way * far_m, way }, format!("after {far_m} m"))
+            }
+            Until::Position(end_m) => {
+                (Measure::Place { end_m: ahead(*end_m, here_m)?, way }, format!("at {end_m} m"))
+            }
+            Until::Mark(name) if backward => {
+                return Err(format!(
+                    "marks are looked for ahead, and the vehicle is to drive backward to `{name}`"
+                ));
+            }
             Until::Mark(name) => {
                 let Some(end_m) = next_mark_m(machine, name) else {
                     return Err(format!("no mark `{name}` stands on the path beyond {here_m:.1} m"));
                 };
-                (Measure::Place(end_m), format!("at the mark `{name}`"))
+                (Measure::Place { end_m, way }, format!("at the mark `{name}`"))
             }
             Until::PathEnd => {
-                let Some((_, end_m)) = machine.model.terrain.extent_m() else {
+                let Some((begin_m, end_m)) = machine.model.terrain.extent_m() else {
                     return Err(
                         "the phase is to last until the path ends, and this path never does".to_owned()
                     );
                 };
-                (Measure::Place(ahead(end_m, here_m)?), "at the end of the path".to_owned())
+                let (end_m, words) = if backward { (begin_m, "begin") } else { (end_m, "end") };
+                (Measure::Place { end_m: ahead(end_m, here_m)?, way }, format!("at the {words} of the path"))
             }
             Until::StateAbove { state, value } => {
                 (state_measure(machine, state, *value, -1.0)?, format!("{state} has risen to {value}"))
@@ -159,7 +187,7 @@ impl Ending {
     pub fn comes_at_rest(&self) -> bool {
         self.measures.iter().any(|measure| match measure {
             Measure::Time(_) | Measure::State { .. } => true,
-            Measure::Speed { .. } | Measure::Place(_) => false,
+            Measure::Speed { .. } | Measure::Rest { .. } | Measure::Place { .. } => false,
         })
     }
 
@@ -168,7 +196,11 @@ impl Ending {
         let keep: Vec<bool> = self
             .measures
             .iter()
-            .map(|measure| !matches!(measure, Measure::Speed { than, way } if *than == 0.0 && *way > 0.0))
+            .map(|measure| match measure {
+                Measure::Rest { .. } => false,
+                Measure::Speed { than, way } => *than != 0.0 || *way <= 0.0,
+                _ => true,
+            })
             .collect();
         let mut kept = keep.iter();
         self.measures.retain(|_| kept.next().copied().unwrap_or(true));
@@ -192,13 +224,17 @@ fn next_mark_m(machine: &Machine, name: &str) -> Option<f64> {
     machine.model.terrain.next_mark_m(name, machine.position_m() + PASSED_M)
 }
 
-/// A position that lies ahead; a rounding behind counts as here.
-fn ahead(end_m: f64, here_m: f64) -> Result<f64, String> {
-    if here_m - end_m > PASSED_M {
-        return Err(format!(
-            "the phase is to end at {end_m} m, which lies {:.1} m behind the vehicle",
-            here_m - end_m
-        ));
+/// A position that lies where the vehicle goes, forward or backward; a rounding on the other side counts as here.
+fn ahead(end_m: f64, here_m: f64, way: f64) -> Result<f64, String> {
+    let passed_m = way * (here_m - end_m);
+    if passed_m > PASSED_M {
+        return Err(if way > 0.0 {
+            format!("the phase is to end at {end_m} m, which lies {passed_m:.1} m behind the vehicle")
+        } else {
+            format!(
+                "the phase is to end at {end_m} m, which lies {passed_m:.1} m ahead of a vehicle that drives backward"
+            )
+        });
     }
     Ok(end_m)
 }

@@ -3,6 +3,7 @@
 use super::Rig;
 use super::contact::forces;
 use crate::accounts::Step;
+use crate::hop::{self, Bearer};
 use crate::spin::Turned;
 use crate::track::heading_of;
 use crate::wheel::{Felt, Touch, Wheel};
@@ -76,12 +77,20 @@ impl Carriage for Rig<'_> {
             let told = towed.feel(&self.ground, self.track.place, self.track.position_m, step_s);
             self.trouble = self.trouble.take().or(told);
             let rolled_m_s = towed.spin.wheels_m_s.clone();
-            let (force, moment, turned) = towed.push(self.way, step_s);
+            let (force, moment, turned) = towed.push(self.way, self.model.gravity_m_s2, step_s);
             towed_push = (force, moment);
             towed_turned = (rolled_m_s, turned);
         }
+        if self.hops {
+            let (more, turn) = self.taken_back(hitch, (force, moment), step_s);
+            force += more;
+            moment += turn;
+        }
         self.world.step((force, moment), towed_push, step_s);
         self.state = self.world.state();
+        if self.hops {
+            hop::follow(&mut self.wheels, (&before, &self.state), step_s);
+        }
         let step = Step {
             before: &before,
             after: &self.state,
@@ -121,8 +130,9 @@ impl Carriage for Rig<'_> {
     }
 
     fn kinetic_j(&self) -> f64 {
-        let towed_j = self.towed.as_ref().map_or(0.0, |towed| towed.spin.kinetic_j());
-        self.world.kinetic_j() + self.spin.kinetic_j() + towed_j
+        let towed_j =
+            self.towed.as_ref().map_or(0.0, |towed| towed.spin.kinetic_j() + hop::kinetic_j(&towed.wheels));
+        self.world.kinetic_j() + self.spin.kinetic_j() + hop::kinetic_j(&self.wheels) + towed_j
     }
 
     fn accounts(&self) -> Vec<(&'static str, f64)> {
@@ -193,6 +203,17 @@ impl Carriage for Rig<'_> {
             ]);
             row.extend(wheel.strut.map(|strut| strut.squeezed_m));
         }
+    }
+}
+
+impl Rig<'_> {
+    /// What is taken back of the inertia of the wheels' own masses under a force in the centre of gravity and a moment about it.
+    fn taken_back(&self, hitch: Vector, (force, moment): (Vector, Vector), step_s: f64) -> (Vector, Vector) {
+        let bearer = Bearer { mass_kg: self.mass_kg, inverse: &self.inverse, state: &self.state };
+        let pressed = self.towed.as_ref().map_or(Vector::ZERO, |towed| towed.pressing());
+        let free = force + pressed - Vector::Z * (self.mass_kg * self.model.gravity_m_s2);
+        let turning = moment + (hitch - self.state.centre).cross(pressed);
+        hop::taken_back(&self.wheels, bearer, (free, turning), step_s)
     }
 }
 

@@ -10,7 +10,12 @@ use headland_sim::Axles;
 use rapier3d_f64::prelude::Vector;
 
 /// All wheels of a vehicle as it stands with its weight, axle by axle, the left one first.
-pub(crate) fn wheels<'a>(axles: &'a Axles, chassis: &Chassis, weight_n: f64) -> Vec<Wheel<'a>> {
+pub(crate) fn wheels<'a>(
+    axles: &'a Axles,
+    chassis: &Chassis,
+    (mass_kg, gravity_m_s2): (f64, f64),
+) -> Vec<Wheel<'a>> {
+    let weight_n = mass_kg * gravity_m_s2;
     let mut wheels = Vec::new();
     for (index, axle) in axles.list().iter().enumerate() {
         let of_tyre = |tyres: f64| tyres * axle.tyre.stiffness_n_per_m();
@@ -38,14 +43,8 @@ pub(crate) fn wheels<'a>(axles: &'a Axles, chassis: &Chassis, weight_n: f64) -> 
                 // The chord of a circle that the ground cuts off.
                 footprint_m: ((axle.tyre.diameter_m - given_m) * given_m).max(0.0).sqrt(),
                 strut: chassis.axles[index].suspension.map(|own| {
-                    let level_m = axles.load_n(index, weight_n, 0.0) / sides.len() as f64 / own.stiffness_n_m;
-                    Strut {
-                        stiffness_n_m: own.stiffness_n_m,
-                        damping_n_s_m: own.damping_n_s_m,
-                        level_m,
-                        squeezed_m: level_m,
-                        rate_m_s: 0.0,
-                    }
+                    let load_n = axles.load_n(index, weight_n, 0.0) / sides.len() as f64;
+                    Strut::level(own, load_n, gravity_m_s2)
                 }),
                 slip: 0.0,
                 side: 0.0,

@@ -7,6 +7,7 @@
 use super::contact::{deflection_m, forces, touch};
 use crate::accounts::{Own, Step};
 use crate::ground::Ground;
+use crate::hop::{self, Bearer};
 use crate::pace::{self, Carried};
 use crate::spin::{Spin, Turned};
 use crate::standing::below;
@@ -16,6 +17,7 @@ use crate::world::{State, World};
 use crate::{BodyError, Chassis};
 use headland_plugin::{Contact, Mode, Place, Situation, Soil};
 use headland_sim::{Model, Push, Stepped};
+use rapier3d_f64::math::Matrix;
 use rapier3d_f64::prelude::{MassProperties, Pose, Rotation, Vector};
 
 /// A trailer behind its vehicle.
@@ -32,7 +34,11 @@ pub(crate) struct Towed<'a> {
     /// What the coupling gives the trailer: ahead of the vehicle and up [N].
     pub pull_n: f64,
     pub load_n: f64,
+    /// The same in the axes of the world.
+    given: Vector,
     resistance_n: f64,
+    /// Inverse of its inertia.
+    inverse: Matrix,
 }
 
 /// The resistance of all its wheels, whatever the ground [N].
@@ -70,10 +76,13 @@ impl<'a> Towed<'a> {
         if mass_kg <= 0.0 {
             return Err(BodyError::NothingTowed);
         }
-        let wheels = wheels(trailer, (1.0 - carried_share) * mass_kg * model.gravity_m_s2, hitch_height_m);
+        let weight_n = (1.0 - carried_share) * mass_kg * model.gravity_m_s2;
+        let wheels = wheels(trailer, (weight_n, model.gravity_m_s2), hitch_height_m);
         let tyres: Vec<f64> = wheels.iter().map(|wheel| wheel.tyres).collect();
         Ok(Some(Self {
             spin: Spin::free(&tyres, trailer.rotating_mass_kg, 0.0),
+            given: Vector::Z * (carried_share * mass_kg * model.gravity_m_s2),
+            inverse: Matrix::IDENTITY,
             state: State::at(Pose::IDENTITY),
             trailer,
             wheels,
@@ -134,7 +143,9 @@ impl<'a> Towed<'a> {
             self.trailer.rotating_mass_kg,
             speed_m_s,
         );
-        world.couple(Pose::from_parts(coupling, turn), self.properties(), velocity, hitch);
+        let properties = self.properties();
+        self.inverse = properties.reconstruct_inverse_inertia_matrix();
+        world.couple(Pose::from_parts(coupling, turn), properties, velocity, hitch);
         self.read(world);
         Ok(())
     }
@@ -147,7 +158,7 @@ impl<'a> Towed<'a> {
     }
 
     /// Refuses a step that is too long for its wheels.
-    pub fn check_step(&self, step_s: f64) -> Result<(), BodyError> {
+    pub fn check_step(&self, step_s: f64, speed_m_s: f64) -> Result<(), BodyError> {
         let Trailer { roll_radius_m, pitch_radius_m, .. } = *self.trailer;
         let lever_m = self.centre().x;
         let carried = Carried {
@@ -155,7 +166,11 @@ impl<'a> Towed<'a> {
             roll_kg_m2: self.mass_kg * roll_radius_m * roll_radius_m,
             pitch_kg_m2: self.mass_kg * (pitch_radius_m * pitch_radius_m + lever_m * lever_m),
         };
-        pace::check(&self.wheels, &self.spin, &Rolling(0.0), carried, step_s)
+        let own_kg_m2 = |radius_m: f64| self.mass_kg * radius_m * radius_m;
+        let roll = ("trailer.roll_radius_m", own_kg_m2(roll_radius_m));
+        let pitch = ("trailer.pitch_radius_m", own_kg_m2(pitch_radius_m));
+        hop::check(&self.wheels, self.centre(), (self.mass_kg, roll, pitch), "trailer.axles.")?;
+        pace::check(&self.wheels, &self.spin, &Rolling(0.0), carried, (step_s, speed_m_s))
     }
 
     /// Takes the mass that its task says; returns the energy that comes with it [J].
@@ -168,7 +183,9 @@ impl<'a> Towed<'a> {
         let before_j = world.kinetic_j();
         self.mass_kg = mass_kg;
         self.carried_share = push.coupled_kg / mass_kg;
-        world.load_towed(self.properties());
+        let properties = self.properties();
+        self.inverse = properties.reconstruct_inverse_inertia_matrix();
+        world.load_towed(properties);
         self.read(world);
         world.kinetic_j() - before_j
     }
@@ -193,10 +210,19 @@ impl<'a> Towed<'a> {
     }
 
     /// Turns its wheels for a step; gives force in its centre of gravity and moment about it.
-    pub fn push(&mut self, way: f64, step_s: f64) -> (Vector, Vector, Turned) {
+    pub fn push(&mut self, way: f64, gravity_m_s2: f64, step_s: f64) -> (Vector, Vector, Turned) {
         let wheels = &self.wheels;
         let turned = self.spin.advance(0.0, 0.0, |wheel| wheels[wheel].felt.gross_n, step_s);
-        let (force, moment) = forces(&self.wheels, &self.spin, &self.state, way);
+        let (mut force, mut moment) = forces(&self.wheels, &self.spin, &self.state, way);
+        if hop::any(&self.wheels) {
+            let bearer = Bearer { mass_kg: self.mass_kg, inverse: &self.inverse, state: &self.state };
+            // The coupling gives what it gave in the last step.
+            let free = force + self.given - Vector::Z * (self.mass_kg * gravity_m_s2);
+            let turning = moment + (self.state.pose.translation - self.state.centre).cross(self.given);
+            let (more, turn) = hop::taken_back(&self.wheels, bearer, (free, turning), step_s);
+            force += more;
+            moment += turn;
+        }
         (force, moment, turned)
     }
 
@@ -217,8 +243,10 @@ impl<'a> Towed<'a> {
         let weight_n = self.mass_kg * gravity_m_s2;
         let change = (self.state.velocity - before.velocity) * (self.mass_kg / step_s);
         let given = change - force + Vector::Z * weight_n;
+        self.given = given;
         (self.pull_n, self.load_n) = (given.dot(vehicle.ahead()), given.dot(vehicle.up()));
         let hitch = before.pose.translation;
+        hop::follow(&mut self.wheels, (&before, &self.state), step_s);
         let step =
             Step { before: &before, after: &self.state, lasts_s: step_s, way, weight_n, hitch, turned };
         let rolling = |wheel: usize| 0.5 * (rolled_m_s[wheel] + self.spin.wheels_m_s[wheel]);
@@ -230,6 +258,11 @@ impl<'a> Towed<'a> {
         for wheel in &mut self.wheels {
             wheel.settle(step_s);
         }
+    }
+
+    /// What presses the vehicle at its hitch [N], by the last step.
+    pub fn pressing(&self) -> Vector {
+        -self.given
     }
 
     /// Energy in its tyres [J].
@@ -245,7 +278,7 @@ impl<'a> Towed<'a> {
 }
 
 /// Its wheels, with arms from the coupling; they carry `weight_n` at rest.
-fn wheels(trailer: &Trailer, weight_n: f64, hitch_height_m: f64) -> Vec<Wheel<'_>> {
+fn wheels(trailer: &Trailer, (weight_n, gravity_m_s2): (f64, f64), hitch_height_m: f64) -> Vec<Wheel<'_>> {
     let whole_n_m: f64 = trailer.axles.iter().map(Trailer::stiffness_n_m).sum();
     let given_m = weight_n / whole_n_m;
     let mut wheels = Vec::new();
@@ -270,13 +303,7 @@ fn wheels(trailer: &Trailer, weight_n: f64, hitch_height_m: f64) -> Vec<Wheel<'_
                 damping_n_s_m: tyres * axle.body.damping_n_s_m,
                 earlier: 0,
                 footprint_m: ((axle.tyre.diameter_m - given_m) * given_m).max(0.0).sqrt(),
-                strut: axle.body.suspension.map(|own| Strut {
-                    stiffness_n_m: own.stiffness_n_m,
-                    damping_n_s_m: own.damping_n_s_m,
-                    level_m: load_n / own.stiffness_n_m,
-                    squeezed_m: load_n / own.stiffness_n_m,
-                    rate_m_s: 0.0,
-                }),
+                strut: axle.body.suspension.map(|own| Strut::level(own, load_n, gravity_m_s2)),
                 slip: 0.0,
                 side: 0.0,
                 sinkage_m: 0.0,

@@ -51,6 +51,14 @@ impl Rig<'_> {
             let left_m = self.track.left_m.abs();
             return Some(format!("the vehicle is {left_m:.1} m beside its path: it cannot steer so tightly"));
         }
+        let footprint_m = self.wheels.iter().map(|wheel| wheel.footprint_m).fold(f64::INFINITY, f64::min);
+        let speed_m_s = state.speed_m_s().abs();
+        if step_s * speed_m_s > footprint_m {
+            return Some(format!(
+                "at {speed_m_s:.1} m/s a wheel rolls past its footprint in a step of {step_s} s: expected {:.1e} s at most",
+                footprint_m / speed_m_s
+            ));
+        }
         self.digging_s = if self.slip() > self.axles.slip_limit { self.digging_s + step_s } else { 0.0 };
         (self.digging_s > DIGS_S).then(|| {
             let most_n: f64 = self.wheels.iter().map(|wheel| wheel.felt.gross_n).sum();

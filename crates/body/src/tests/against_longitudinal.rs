@@ -1,6 +1,8 @@
 //! Where the physics is the same, both fidelities say the same.
 
-use super::{GRAVITY, Ideal, MASS_KG, coast_down, cycle, last, model, run, soil, terrain};
+use super::{GRAVITY, Ideal, MASS_KG, chassis, coast_down, cycle, last, model, run, soil, terrain};
+use crate::chassis::Differential;
+use headland_plugin::{Contact, Footing, Soil, WheelContact};
 use headland_sim::{Cycle, End, Model, Named, Outcome, Phase, Until, simulate};
 use headland_soil::{Brixius, Constant, LinearSpeedLaw};
 use headland_task::Drawbar;
@@ -94,6 +96,61 @@ fn wheels_that_are_asked_for_more_than_the_soil_gives_dig_in() {
     model.tasks.push(Named { name: "Drawbar".to_owned(), plugin: pull });
     let outcome = run(&model, &cycle(2.0, vec![Phase::Hold { for_s: 30.0 }], 1e-3));
     let End::Stopped { reason, .. } = &outcome.end else { panic!("{:?}", outcome.end) };
+    assert!(reason.contains("slip past the limit"), "{reason}");
+}
+
+/// Ice to the left, firm ground to the right.
+#[derive(Debug)]
+struct Split;
+
+impl Soil for Split {
+    fn resistance_n(&self, _: &Contact) -> f64 {
+        f64::NAN
+    }
+
+    fn needs_axles(&self) -> bool {
+        true
+    }
+
+    fn wheel(&self, contact: &WheelContact) -> Option<Footing> {
+        let holds = if contact.place.east_m < 0.0 { 0.1 } else { 0.7 };
+        Some(Footing {
+            gross_traction_n: contact.load_n * holds * (12.0 * contact.slip / holds).tanh(),
+            motion_resistance_n: 0.02 * contact.load_n,
+            sinkage_m: 0.0,
+        })
+    }
+}
+
+/// Open differentials give both sides what the ice holds, 2 · 0.1 · W / 2 = 12.8 kN less what resists: not the 25 kN that are
+/// pulled. Locked ones give each side its own, up to (0.1 + 0.7) W / 2 = 51 kN.
+#[test]
+fn with_one_side_on_ice_locked_differentials_pull_what_open_ones_do_not() {
+    let end = |differential: Differential| {
+        let mut model = model(terrain::<Flat>("()"), Box::new(Split));
+        model.driveline = Box::new(Ideal);
+        let pull = Box::new(ron::from_str::<Drawbar>("(force_n: 25e3)").unwrap());
+        model.tasks.push(Named { name: "Drawbar".to_owned(), plugin: pull });
+        let mut chassis = chassis();
+        for axle in &mut chassis.axles {
+            axle.differential = differential;
+        }
+        let cycle = cycle(2.0, vec![Phase::Hold { for_s: 6.0 }], 1e-3);
+        crate::simulate(&model, &chassis, &cycle, 0.0).unwrap()
+    };
+    let locked = end(Differential::Locked);
+    assert_eq!(locked.end, End::Finished);
+    let of = |side: &str| {
+        last(&locked, &format!("axle_1_{side}_traction_n"))
+            + last(&locked, &format!("axle_2_{side}_traction_n"))
+    };
+    let (ice_n, firm_n) = (of("left"), of("right"));
+    assert!(ice_n < 0.1 * 0.55 * MASS_KG * GRAVITY && firm_n > 2.0 * ice_n, "{ice_n} {firm_n}");
+    // Pull, motion resistance, air: nothing is left over that would speed it up.
+    let resisting_n = 25e3 + 0.02 * MASS_KG * GRAVITY + last(&locked, "air_resistance_n");
+    assert!(((ice_n + firm_n) / resisting_n - 1.0).abs() < 0.01, "{ice_n} {firm_n}");
+    let open = end(Differential::Open);
+    let End::Stopped { reason, .. } = &open.end else { panic!("{:?}", open.end) };
     assert!(reason.contains("slip past the limit"), "{reason}");
 }
 

@@ -1,7 +1,9 @@
 //! Cross-checks: against the longitudinal fidelity, against formulas, against itself.
 
 mod against_longitudinal;
+mod backing;
 mod ending;
+mod hopping;
 mod parts;
 mod standing;
 mod swinging;
@@ -10,6 +12,8 @@ mod turning;
 
 use crate::{AxleBody, Chassis, Differential, Steering, SteeringMode, simulate};
 use headland_plugin::{Air, Delivery, Demand, Driveline, Place, Plugin, Soil, Spot, Surface, Terrain, Tyre};
+pub use towing::{Tow, hitched};
+
 use headland_sim::{Axle, Axles, Cycle, Model, Outcome, Phase, Resistance, Start, Until, Vehicle};
 
 pub const GRAVITY: f64 = 9.806_65;

@@ -145,9 +145,39 @@ fn a_start_beyond_the_map_or_on_ground_that_nothing_stands_on_is_refused() {
     let chassis = chassis();
     let told = Rig::new(&far, &chassis, start, 2e-3).unwrap_err();
     assert!(matches!(told, BodyError::OffTheMap { .. }), "{told}");
+    let level = model(settled(PATH), soil::<Constant>("(coefficient: 0.02)"));
+    let told = Rig::new(&level, &chassis, Start { position_m: 75.0, speed_m_s: 0.0 }, 2e-3).unwrap_err();
+    assert_eq!(told, BodyError::OffThePath { found_m: 75.0, from_m: 0.0, to_m: 60.0 });
     let cliff = model(Box::new(Cliff(9.0)), soil::<Constant>("(coefficient: 0.02)"));
     let told = Rig::new(&cliff, &chassis, at_rest(), 2e-3).unwrap_err();
     assert!(matches!(told, BodyError::BelowGround { .. } | BodyError::NoRest), "{told}");
+}
+
+fn settled(ron: &str) -> Box<dyn Terrain> {
+    let mut profile = ron::from_str::<headland_terrain::Profile>(ron).unwrap();
+    headland_plugin::Plugin::settle(&mut profile, std::path::Path::new("")).unwrap();
+    Box::new(profile)
+}
+
+/// A level path of 60 m.
+const PATH: &str =
+    "(heading_rad: 0, points: [(position_m: 0, elevation_m: 0), (position_m: 60, elevation_m: 0)])";
+
+/// At 60 m/s a wheel goes a third of a metre in 6 ms, and its footprint is 0.65 m long.
+#[test]
+fn a_step_in_which_a_wheel_leaves_its_footprint_is_refused_and_told_where_it_comes_to_that() {
+    let model = model(terrain::<Flat>("()"), soil::<Constant>("(coefficient: 0.07)"));
+    let told = simulate(&model, &chassis(), &cycle(60.0, coast_down(), 6e-3), 0.0).unwrap_err().to_string();
+    assert!(told.contains("`step_s` is 0.006") && told.contains("rolls past its footprint"), "{told}");
+    let steep = model_on(terrain::<ConstantGrade>("(grade: -0.8)"), model);
+    let outcome = run(&steep, &cycle(40.0, coast_down(), 6e-3));
+    let End::Stopped { reason, .. } = &outcome.end else { panic!("{:?}", outcome.end) };
+    assert!(reason.contains("a wheel rolls past its footprint in a step of 0.006 s"), "{reason}");
+    assert!(outcome.trace.len() > 100, "the trace is kept");
+}
+
+fn model_on(terrain: Box<dyn Terrain>, model: headland_sim::Model) -> headland_sim::Model {
+    headland_sim::Model { terrain, ..model }
 }
 
 #[test]

@@ -19,7 +19,7 @@ const DRAWBAR_M: f64 = 4.5;
 const ROTATING_KG: f64 = 200.0;
 
 #[derive(Debug)]
-struct Tow;
+pub struct Tow;
 
 impl Task for Tow {
     fn load(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Load {
@@ -44,7 +44,7 @@ fn low() -> Chassis {
     chassis
 }
 
-fn hitched() -> Chassis {
+pub fn hitched() -> Chassis {
     let body = AxleBody {
         damping_n_s_m: 5e3,
         friction: 0.8,

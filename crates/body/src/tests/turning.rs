@@ -159,8 +159,12 @@ fn a_vehicle_that_overturns_is_told_with_time_and_place() {
         2e-3,
     );
     let outcome = simulate(&model, &gripping(), &cycle, 0.0).unwrap();
-    let End::Stopped { reason, position_m, .. } = &outcome.end else { panic!("{:?}", outcome.end) };
+    let End::Stopped { reason, position_m, time_s } = &outcome.end else { panic!("{:?}", outcome.end) };
     assert!(reason.contains("overturned onto its side"), "{reason} at {position_m}");
+    // The trace is kept up to there, and ends at that time and place.
+    assert_eq!(outcome.trace.time_s().last(), Some(time_s));
+    assert_eq!(last(&outcome, "position_m"), *position_m);
+    assert!(last(&outcome, "roll_rad") > 1.0 && channel(&outcome, "roll_rad")[0].abs() < 0.01);
     // The upper wheels leave the ground where the slope below the middle of the vehicle is the threshold; it sways as it
     // comes there, and is steered uphill to hold its path.
     let upper: Vec<f64> = channel(&outcome, "axle_1_left_load_n")

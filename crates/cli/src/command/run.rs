@@ -142,7 +142,7 @@ fn summary_of(id: &str, outcome: &Outcome) -> RunSummary {
         duration_s: outcome.trace.duration_s(),
         distance_m: ends("position_m"),
         initial_speed_m_s: series("speed_m_s").first().copied().unwrap_or(0.0),
-        highest_speed_m_s: series("speed_m_s").iter().copied().fold(0.0, f64::max),
+        highest_speed_m_s: series("speed_m_s").iter().copied().map(f64::abs).fold(0.0, f64::max),
         steps: outcome.steps,
         relative_energy_residual: outcome.ledger.relative_residual(),
         energy: outcome.ledger.clone(),
@@ -160,6 +160,11 @@ fn stopped(run: &RunSummary) -> Option<String> {
         )),
     }
 }
+
+/// A ledger that stays open by more than this part of what moved is told.
+const OPEN: f64 = 1e-3;
+/// A run that stopped in its first steps has moved nothing to speak of.
+const FEW_STEPS: usize = 100;
 
 /// A remark in one line.
 pub fn told_remark(remark: &Remark) -> String {
@@ -189,6 +194,14 @@ fn told(scenario: &Scenario, summary: &Summary, took_ms: f64, output: &Output) -
             "  {}energy   {}",
             if name.is_empty() { "" } else { "           " },
             told_energy(&run.energy)
+        );
+    }
+    let open = |run: &&RunSummary| run.relative_energy_residual > OPEN && run.steps > FEW_STEPS;
+    for run in summary.runs.iter().filter(open) {
+        let _ = writeln!(
+            text,
+            "  note     the energies of run `{}` stay open by {:.0e} of what moved: a shorter `step_s` than {step_ms} ms may help",
+            run.id, run.relative_energy_residual
         );
     }
     for remark in &summary.remarks {

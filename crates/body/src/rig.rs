@@ -18,7 +18,7 @@ use crate::track::{Track, yaw_of};
 use crate::wheel::{Scene, Touch, Wheel};
 use crate::world::{State, World, properties};
 use headland_plugin::{Refusal, Soil};
-use headland_sim::{Axles, Model, Push, Start};
+use headland_sim::{Axles, Model, Push, Start, Vehicle};
 use rapier3d_f64::math::Matrix;
 use rapier3d_f64::prelude::Vector;
 pub(crate) use towed::Towed;
@@ -69,27 +69,9 @@ impl<'a> Rig<'a> {
         let axles = model.axles.as_ref().ok_or(BodyError::NoAxles)?;
         let soil = model.soil.as_deref().ok_or(BodyError::NoSoil)?;
         chassis.check(axles)?;
-        if let Some(index) = axles.list().iter().position(|axle| axle.wheels > 1 && axle.track_m <= 0.0) {
-            return Err(BodyError::Axles(Refusal {
-                parameter: format!("axles.{index}.track_m"),
-                found: axles.list()[index].track_m.to_string(),
-                expected: "more than 0: a rigid body would fall over".to_owned(),
-            }));
-        }
         let mass_kg = model.vehicle.mass_kg;
         let rotating_kg = model.vehicle.rotating_mass_kg;
-        for (name, found) in [("mass_kg", mass_kg), ("rotating_mass_kg", rotating_kg)] {
-            if found <= 0.0 || found.is_nan() {
-                return Err(BodyError::NotPositive { name, found });
-            }
-        }
-        if let Some((from_m, to_m)) = model
-            .terrain
-            .extent_m()
-            .filter(|(from_m, to_m)| !(*from_m - ROUNDING_M..=*to_m + ROUNDING_M).contains(&start.position_m))
-        {
-            return Err(BodyError::OffThePath { found_m: start.position_m, from_m, to_m });
-        }
+        check_start(model, axles, start)?;
         let ground = Ground::of(&*model.terrain, start.position_m)?;
         let weight_n = mass_kg * model.gravity_m_s2;
         let mut wheels = wheels(axles, chassis, (mass_kg, model.gravity_m_s2));
@@ -289,6 +271,31 @@ impl<'a> Rig<'a> {
         let up_m = self.axles.hitch_height_m - self.axles.centre_of_gravity_height_m;
         self.state.point(Vector::new(self.chassis.hitch_position_m, 0.0, up_m))
     }
+}
+
+/// Refuses axles, masses and a start that no body can have.
+fn check_start(model: &Model, axles: &Axles, start: Start) -> Result<(), BodyError> {
+    if let Some(index) = axles.list().iter().position(|axle| axle.wheels > 1 && axle.track_m <= 0.0) {
+        return Err(BodyError::Axles(Refusal {
+            parameter: format!("axles.{index}.track_m"),
+            found: axles.list()[index].track_m.to_string(),
+            expected: "more than 0: a rigid body would fall over".to_owned(),
+        }));
+    }
+    let Vehicle { mass_kg, rotating_mass_kg, .. } = model.vehicle;
+    for (name, found) in [("mass_kg", mass_kg), ("rotating_mass_kg", rotating_mass_kg)] {
+        if found <= 0.0 || found.is_nan() {
+            return Err(BodyError::NotPositive { name, found });
+        }
+    }
+    if let Some((from_m, to_m)) = model
+        .terrain
+        .extent_m()
+        .filter(|(from_m, to_m)| !(*from_m - ROUNDING_M..=*to_m + ROUNDING_M).contains(&start.position_m))
+    {
+        return Err(BodyError::OffThePath { found_m: start.position_m, from_m, to_m });
+    }
+    Ok(())
 }
 
 /// The direction of a path on its slope.

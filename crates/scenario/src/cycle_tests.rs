@@ -124,8 +124,8 @@ fn fields_that_do_not_exist_or_lack_are_told_where_they_stand() {
     assert!(told.contains("did you mean `work`?"), "{told}");
     let told = broken("speed_m_s: 1, acceleration_m_s2: 0.5, until", "speed_m_s: 1, until", "Drive");
     assert!(told.contains("`acceleration_m_s2`"), "{told}");
-    let told = broken("speed_m_s: 1,", "speed_m_s: -1,", "-1");
-    assert!(told.contains("0 or more"), "{told}");
+    let told = broken("acceleration_m_s2: 0.5, until", "acceleration_m_s2: -0.5, until", "-0.5");
+    assert!(told.contains("more than 0"), "{told}");
     let told = broken("\"tank\": Spreader", "\"a tank\": Spreader", "\"a tank\"");
     assert!(told.contains("letters, digits"), "{told}");
     let told = broken("\"plough\": Tillage(implement", "\"PtoPower\": Tillage(implement", "");

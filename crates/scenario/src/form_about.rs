@@ -86,6 +86,11 @@ pub const ABOUT: &[(&str, &str, &str)] = &[
     ("scenario", "vehicle.body.axles.suspension", "between axle and chassis, a wheel; stiff without"),
     ("scenario", "vehicle.body.axles.suspension.stiffness_n_m", "of its spring"),
     ("scenario", "vehicle.body.axles.suspension.damping_n_s_m", "of its damper"),
+    (
+        "scenario",
+        "vehicle.body.axles.suspension.unsprung_mass_kg",
+        "of the vehicle's mass, below it on each side",
+    ),
     ("scenario", "vehicle.body.trailer", "behind the hitch, as a body of its own"),
     ("scenario", "vehicle.body.trailer.centre_of_gravity_height_m", "above level ground, loaded or not"),
     ("scenario", "vehicle.body.trailer.roll_radius_m", "radius of gyration about the axis forward"),
@@ -128,6 +133,11 @@ pub const ABOUT: &[(&str, &str, &str)] = &[
     ("scenario", "vehicle.body.trailer.axles.suspension", "between axle and trailer, a wheel; stiff without"),
     ("scenario", "vehicle.body.trailer.axles.suspension.stiffness_n_m", "of its spring"),
     ("scenario", "vehicle.body.trailer.axles.suspension.damping_n_s_m", "of its damper"),
+    (
+        "scenario",
+        "vehicle.body.trailer.axles.suspension.unsprung_mass_kg",
+        "of the trailer's mass, below it on each side",
+    ),
     ("scenario", "vehicle.driveline", "from the store of energy to the wheels"),
     (
         "scenario",
@@ -212,7 +222,7 @@ pub const ABOUT: &[(&str, &str, &str)] = &[
     ("phase", "Follow.speeds_m_s", "one for each time"),
     ("phase", "Follow.file", "a table with `time_s` and `speed_m_s` instead"),
     ("phase", "Drive", "comes to a speed and keeps it"),
-    ("phase", "Drive.speed_m_s", "that is kept"),
+    ("phase", "Drive.speed_m_s", "that is kept; backward below 0"),
     ("phase", "Drive.acceleration_m_s2", "towards it, more than 0"),
     ("phase", "Drive.tolerance_m_s", "the run stops where the speed falls behind by more"),
     ("phase", "Drive.until", "what ends it"),

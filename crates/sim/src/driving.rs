@@ -26,7 +26,7 @@ impl Running<'_> {
         let backward = self.backward;
         move |time_s| {
             let engine_speed_rad_s = over.as_ref().map_or(kept, |over| over.speed_m_s(time_s));
-            Given { engine_speed_rad_s, backward, ..Given::default() }
+            Given { backward, engine_speed_rad_s, ..Given::default() }
         }
     }
 

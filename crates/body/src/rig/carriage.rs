@@ -1,7 +1,7 @@
 //! One step of the body, and what a run sees of it.
 
-use super::Rig;
 use super::contact::forces;
+use super::{Rig, Towed};
 use crate::accounts::Step;
 use crate::hop::{self, Bearer};
 use crate::spin::Turned;
@@ -210,7 +210,7 @@ impl Rig<'_> {
     /// What is taken back of the inertia of the wheels' own masses under a force in the centre of gravity and a moment about it.
     fn taken_back(&self, hitch: Vector, (force, moment): (Vector, Vector), step_s: f64) -> (Vector, Vector) {
         let bearer = Bearer { mass_kg: self.mass_kg, inverse: &self.inverse, state: &self.state };
-        let pressed = self.towed.as_ref().map_or(Vector::ZERO, |towed| towed.pressing());
+        let pressed = self.towed.as_ref().map_or(Vector::ZERO, Towed::pressing);
         let free = force + pressed - Vector::Z * (self.mass_kg * self.model.gravity_m_s2);
         let turning = moment + (hitch - self.state.centre).cross(pressed);
         hop::taken_back(&self.wheels, bearer, (free, turning), step_s)

@@ -19,8 +19,10 @@ pub enum BatchError {
         error: ScenarioError,
     },
     /// A comparison of more runs than anybody waits for.
-    #[error("the comparison has {found} runs, expected at most {most}")]
+    #[error("{} has {found} runs, expected at most {most}", path.display())]
     TooMany {
+        /// The comparison.
+        path: PathBuf,
         /// How many.
         found: u128,
         /// How many may be.

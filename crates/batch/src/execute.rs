@@ -9,6 +9,7 @@ use crate::plan::Plan;
 use crate::row::{Row, Status};
 use headland_plugin::Registry;
 use headland_scenario::Scenario;
+use headland_sim::End;
 use headland_trace::{Run, Trace, write_parquet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -21,7 +22,7 @@ use std::time::{Duration, Instant};
 pub struct Settings<'a> {
     /// Whether the trace of every run is kept, in `runs/<number>/trace.parquet`.
     pub traces: bool,
-    /// Whether to stop before the next run.
+    /// Whether to stop, without finishing what is being run.
     pub stop: &'a (dyn Fn() -> bool + Sync),
     /// Told after rows were written.
     pub progress: &'a (dyn Fn(Progress) + Sync),
@@ -90,7 +91,11 @@ pub fn execute(
                 if done.has(number) && traced {
                     continue;
                 }
-                let (row, trace) = run(plan, registry, number);
+                // One that is interrupted is run again as a whole.
+                let Some((row, trace)) = run_unless(plan, registry, number, settings.stop) else {
+                    fail(BatchError::Interrupted);
+                    return;
+                };
                 if let (Some(path), Some(trace)) = (trace_file, trace)
                     && let Err(error) = keep(&path, number, trace)
                 {
@@ -157,17 +162,29 @@ impl Done {
 
 /// Simulates one run, whatever happens in it.
 pub fn run(plan: &Plan, registry: &Registry, number: u64) -> (Row, Option<Trace>) {
+    let whole = run_unless(plan, registry, number, &|| false);
+    whole.unwrap_or_else(|| (Row::without(number, Status::Failed, "it was interrupted".to_owned()), None))
+}
+
+/// As [`run`]; `None` where `stop` says so before it has ended.
+fn run_unless(
+    plan: &Plan,
+    registry: &Registry,
+    number: u64,
+    stop: &dyn Fn() -> bool,
+) -> Option<(Row, Option<Trace>)> {
     let spec = plan.spec(number);
     let simulated = catch_unwind(AssertUnwindSafe(|| {
         let read = plan.document(spec).and_then(|document| Scenario::with_model(document, registry));
         let (scenario, model) = match read {
             Ok(both) => both,
-            Err(error) => return (Row::without(number, Status::Refused, error.to_string()), None),
+            Err(error) => return Some((Row::without(number, Status::Refused, error.to_string()), None)),
         };
         let Some(cycle) = &scenario.cycle else {
-            return (Row::without(number, Status::Refused, "there is no cycle".to_owned()), None);
+            return Some((Row::without(number, Status::Refused, "there is no cycle".to_owned()), None));
         };
-        match scenario.fidelity.simulate(&model, cycle) {
+        Some(match scenario.fidelity.simulate_unless(&model, cycle, stop) {
+            Ok(outcome) if matches!(outcome.end, End::Interrupted { .. }) => return None,
             Ok(outcome) if outcome.ledger.turnover_j().is_finite() => {
                 (Row::of(number, &outcome, &plan.comparison.accounting), Some(outcome.trace))
             }
@@ -176,7 +193,7 @@ pub fn run(plan: &Plan, registry: &Registry, number: u64) -> (Row, Option<Trace>
                 (Row::without(number, Status::Refused, error.to_owned()), None)
             }
             Err(error) => (Row::without(number, Status::Failed, error.to_string()), None),
-        }
+        })
     }));
     simulated.unwrap_or_else(|panic| {
         let words = panic
@@ -184,7 +201,7 @@ pub fn run(plan: &Plan, registry: &Registry, number: u64) -> (Row, Option<Trace>
             .map(String::as_str)
             .or_else(|| panic.downcast_ref::<&str>().copied())
             .unwrap_or("a model panicked without a word");
-        (Row::without(number, Status::Failed, words.to_owned()), None)
+        Some((Row::without(number, Status::Failed, words.to_owned()), None))
     })
 }
 

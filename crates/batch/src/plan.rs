@@ -62,7 +62,11 @@ impl Plan {
             [&comparison.variants, &comparison.cycles, &comparison.grounds].map(|one| one.len() as u128);
         let found = counts.iter().product::<u128>() * comparison.points.len() * u128::from(comparison.times);
         let total = u64::try_from(found).ok().filter(|total| *total <= MOST_RUNS);
-        let total = total.ok_or(BatchError::TooMany { found, most: MOST_RUNS })?;
+        let total = total.ok_or_else(|| BatchError::TooMany {
+            path: comparison.document.path().to_owned(),
+            found,
+            most: MOST_RUNS,
+        })?;
         let points = u64::try_from(comparison.points.len()).unwrap_or(0);
         let mut combinations = Vec::new();
         for variant in &comparison.variants {

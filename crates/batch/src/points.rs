@@ -48,11 +48,14 @@ pub struct Points {
 /// Most samples of a hypercube; their strata are held in memory.
 const MOST_SAMPLES: u32 = 1_000_000;
 
+/// Most values of a range; they are held in memory.
+const MOST_SWEPT: u32 = 1_000_000;
+
 impl Points {
     pub(crate) fn read(document: &Document) -> Result<Self, ScenarioError> {
         let mut points = Self { count: 1, ..Self::default() };
         if let Some(node) = document.find("sweep") {
-            for (path, value, at) in entries(document, node, "sweep")? {
+            for (path, value, at) in some(document, node, "sweep")? {
                 points.sweep.push(Listed { path, values: listed(document, value)?, at });
             }
         }
@@ -64,19 +67,20 @@ impl Points {
             }
             (points.count, points.sample_seed) = (file.count, file.seed);
             let ranges = document.find("sample.of").unwrap_or(node);
-            for (path, value, at) in entries(document, ranges, "of")? {
+            for (path, value, at) in some(document, ranges, "of")? {
                 let (ends, logarithmic) = range(document, value)?;
                 points.sample.push(Drawn { path, ends, logarithmic, at });
             }
         }
         if let Some(node) = document.find("vary") {
-            for (path, value, at) in entries(document, node, "vary")? {
+            for (path, value, at) in some(document, node, "vary")? {
                 let values = match &value.shape {
                     Shape::Tuple { values, name: None } if values.len() == 2 => values,
                     _ => return Err(expected(document, value, "vary", "(low, high)")),
                 };
-                if values.iter().any(|value| number(document, value).is_none()) {
-                    return Err(expected(document, value, "vary", "two numbers"));
+                match [number(document, &values[0]), number(document, &values[1])] {
+                    [Some(low), Some(high)] if low < high => {}
+                    _ => return Err(expected(document, value, "vary", "two numbers, low below high")),
                 }
                 points.vary.push(Listed { path, values: texts(document, values), at });
             }
@@ -176,12 +180,23 @@ pub(crate) fn inside(path: &str, other: &str) -> bool {
     path.strip_prefix(other).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
+/// As [`entries`], one at least: who moves nothing has forgotten what.
+fn some<'a>(
+    document: &Document,
+    node: &'a Node,
+    name: &str,
+) -> Result<Vec<(String, &'a Node, usize)>, ScenarioError> {
+    let all = entries(document, node, name)?;
+    if all.is_empty() { Err(expected(document, node, name, "one path or more")) } else { Ok(all) }
+}
+
 fn texts(document: &Document, nodes: &[Node]) -> Vec<String> {
     nodes.iter().map(|node| document.text()[node.span.clone()].to_owned()).collect()
 }
 
 fn listed(document: &Document, node: &Node) -> Result<Vec<String>, ScenarioError> {
-    const WANTED: &str = "a list of values, or Range(low, high, count) with a count of 2 or more";
+    const WANTED: &str =
+        "a list of values, or Range(low, high, count) with two numbers and a count from 2 to 1000000";
     match &node.shape {
         Shape::List(values) if !values.is_empty() => Ok(texts(document, values)),
         Shape::Tuple { values, .. } if node.name(document.text()) == Some("Range") => {
@@ -190,7 +205,7 @@ fn listed(document: &Document, node: &Node) -> Result<Vec<String>, ScenarioError
             };
             let count: Option<u32> = document.text()[count.span.clone()].parse().ok();
             match (number(document, low), number(document, high), count) {
-                (Some(low), Some(high), Some(count)) if count >= 2 && low != high => {
+                (Some(low), Some(high), Some(count)) if (2..=MOST_SWEPT).contains(&count) && low != high => {
                     let last = f64::from(count - 1);
                     let at = |step: u32| {
                         let share = f64::from(step) / last;

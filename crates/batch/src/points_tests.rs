@@ -50,6 +50,19 @@ fn a_logarithmic_range_has_as_many_below_as_above_its_geometric_mean() {
     assert_eq!(below, 50);
 }
 
+/// A range of thousands of millions of values was laid out in memory before anybody counted the runs.
+#[test]
+fn what_moves_nothing_or_more_than_memory_holds_is_refused() {
+    let refused = |text: &str| read(text).unwrap_err().to_string();
+    for text in ["(sweep: {})", "(vary: {})", "(sample: (count: 3, seed: 1, of: {}))"] {
+        assert!(refused(text).contains("expected one path or more"), "{text}: {}", refused(text));
+    }
+    let many = refused("(sweep: {\"a\": Range(0, 1, 4000000000)})");
+    assert!(many.contains("a count from 2 to 1000000"), "{many}");
+    let back = refused("(vary: {\"a\": (2, 1)})");
+    assert!(back.contains("is (2, 1), expected two numbers, low below high"), "{back}");
+}
+
 #[test]
 fn one_parameter_is_varied_at_a_time_and_the_first_point_is_as_written() {
     let points = read("(vary: {\"a\": (1, 2), \"b\": (3, 4)})").unwrap();

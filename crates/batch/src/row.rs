@@ -62,6 +62,9 @@ impl Row {
             End::Stopped { time_s, position_m, reason } => {
                 (Status::Stopped, format!("{reason} (at {time_s:.2} s and {position_m:.1} m)"))
             }
+            End::Interrupted { time_s, position_m } => {
+                (Status::Stopped, format!("it was interrupted (at {time_s:.2} s and {position_m:.1} m)"))
+            }
         };
         let trace = &outcome.trace;
         let series = |name: &str| trace.get(name).unwrap_or(&[]);

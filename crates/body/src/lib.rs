@@ -30,7 +30,7 @@ pub use error::BodyError;
 pub use hub::{Hub, TrailerHubs, hubs, trailer_hubs};
 pub use trailer::{Trailer, TrailerAxle};
 
-use headland_sim::{Cycle, Model, Outcome, simulate_on};
+use headland_sim::{Cycle, Model, Outcome, Simulation};
 use headland_trace::TraceError;
 use rig::Rig;
 
@@ -50,8 +50,22 @@ pub enum RunError {
 /// # Errors
 /// [`RunError`] where the vehicle cannot stand where it is to start, or the step is too long for it.
 pub fn simulate(model: &Model, chassis: &Chassis, cycle: &Cycle, record_s: f64) -> Result<Outcome, RunError> {
+    simulate_unless(model, chassis, cycle, record_s, &|| false)
+}
+
+/// As [`simulate`], and ends as [`headland_sim::End::Interrupted`] soon after `stop` says so.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_unless(
+    model: &Model,
+    chassis: &Chassis,
+    cycle: &Cycle,
+    record_s: f64,
+    stop: &dyn Fn() -> bool,
+) -> Result<Outcome, RunError> {
     let rig = Rig::new(model, chassis, cycle.start, cycle.step_s)?;
-    Ok(simulate_on(model, Box::new(rig), cycle, record_s)?)
+    Ok(Simulation::new(model, cycle).on(Box::new(rig), record_s).unless(stop).run()?)
 }
 
 /// Whether a model can be driven as a rigid body through a cycle.

@@ -294,8 +294,11 @@ impl Engine {
 
     /// Power of the accessories at a speed.
     pub(crate) fn accessories_w(&self, speed: f64) -> f64 {
-        let fan = (speed / self.curve.peak_speed()).powi(3);
-        self.accessory_power_w + self.pump_torque_n_m * speed + self.fan_power_w * fan
+        let others_w = self.accessory_power_w + self.pump_torque_n_m * speed;
+        if self.fan_power_w == 0.0 {
+            return others_w;
+        }
+        others_w + self.fan_power_w * (speed / self.curve.peak_speed()).powi(3)
     }
 
     /// The share of the full-load torque that smoke and boost allow.
@@ -364,7 +367,8 @@ impl Engine {
             return crossing(last, idle, |speed| -net_w - takes(speed));
         }
         let share = self.load_share.min(self.limit(at.boost));
-        let fan = self.fan_power_w / self.curve.peak_speed().powi(3);
+        let fan =
+            if self.fan_power_w == 0.0 { 0.0 } else { self.fan_power_w / self.curve.peak_speed().powi(3) };
         self.curve.speed_for(share, [self.accessory_power_w + net_w, self.pump_torque_n_m, fan])
     }
 

@@ -11,7 +11,7 @@
 //! a freewheel: nothing is braked by the engine, and the service brakes take it all. Consumers are always served, beyond full
 //! power if need be at the efficiency of full power. Leaves out friction in overrun, boost and shifts.
 
-use crate::parts::{hold, increasing, place, refuse};
+use crate::parts::{hold, increasing, refuse};
 use headland_plugin::{
     Bound, Card, Delivery, Demand, Driveline, Parameter, Plugin, Readings, Refusal, Shaft, parameter,
 };
@@ -65,6 +65,9 @@ pub struct EngineByPower {
     rotating_mass_kg: f64,
     #[serde(skip)]
     loads: Vec<f64>,
+    /// Of the efficiency, from each load to the next one.
+    #[serde(skip)]
+    slopes: Vec<f64>,
 }
 
 impl Plugin for EngineByPower {
@@ -86,6 +89,8 @@ impl Plugin for EngineByPower {
         if first != 0.0 || last != 1.0 {
             return Err(refuse("efficiency", format!("loads from {first} to {last}"), "from 0 to 1"));
         }
+        let slope = |[one, two]: &[Point; 2]| (two.efficiency - one.efficiency) / (two.load - one.load);
+        self.slopes = self.efficiency.array_windows().map(slope).collect();
         match self.efficiency.iter().find(|point| !Bound::Efficiency.holds(point.efficiency)) {
             Some(point) => Err(refuse("efficiency", point.efficiency, &Bound::Efficiency.in_words())),
             None => Ok(()),
@@ -95,9 +100,13 @@ impl Plugin for EngineByPower {
 
 impl EngineByPower {
     fn fuel_w(&self, power_w: f64) -> f64 {
-        let (index, share) = place(&self.loads, power_w / self.max_power_w);
-        let (one, two) = (self.efficiency[index].efficiency, self.efficiency[index + 1].efficiency);
-        (power_w / (one + share * (two - one))).max(self.idle_fuel_power_w)
+        // Beyond full power its efficiency stays.
+        let load = (power_w / self.max_power_w).clamp(0.0, 1.0);
+        // Counting has no branch to be foreseen, and the points are few.
+        let passed = self.loads.iter().map(|point| usize::from(*point <= load)).sum::<usize>();
+        let index = passed.saturating_sub(1).min(self.slopes.len() - 1);
+        let efficiency = self.efficiency[index].efficiency + self.slopes[index] * (load - self.loads[index]);
+        (power_w / efficiency).max(self.idle_fuel_power_w)
     }
 
     fn others_w(&self, auxiliary_w: f64, shaft_w: f64) -> f64 {
@@ -130,11 +139,12 @@ impl Driveline for EngineByPower {
             }
         }
         let wheels = force_n * v;
-        let power = wheels / eta + others;
+        let through = wheels / eta;
+        let power = through + others;
         let fuel_w = self.fuel_w(power);
         let mut delivery = Delivery { force_n, source_power_w: fuel_w, ..Delivery::NOTHING };
         delivery.losses_w[0] = fuel_w - power;
-        delivery.losses_w[1] = wheels / eta - wheels;
+        delivery.losses_w[1] = through - wheels;
         delivery.losses_w[2] = others - demand.auxiliary_power_w - demand.shaft_power_w;
         delivery.readings =
             Readings { fuel_rate_kg_s: fuel_w / self.lower_heating_value_j_kg, ..Readings::NONE };

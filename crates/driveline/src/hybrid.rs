@@ -102,6 +102,10 @@ pub(crate) trait Topology: Debug + Send + Sync {
     fn most_force_n(&self, asked: &Asked) -> (f64, f64);
     /// What flows for a force in the direction of driving; `engine_w` is `None` where the engine stands still.
     fn flow(&self, asked: &Asked, force_n: f64, engine_w: Option<f64>) -> Flow;
+    /// Of that, what the machines take from the store while the engine runs [W].
+    fn bus_w(&self, asked: &Asked, force_n: f64, engine_w: f64) -> f64 {
+        self.flow(asked, force_n, Some(engine_w)).bus_w
+    }
     /// Changes its own states between two steps.
     fn choose(&self, asked: &Asked, flow: &Flow, own: &mut [f64]) -> bool {
         let _ = (asked, flow, own);
@@ -265,7 +269,7 @@ impl<T: Topology> Managed<T> {
         let asked = Self::asked(demand, states);
         let force = self.wanted_n(&asked);
         let others = self.topology.consumers().total_w(demand);
-        let bus = |engine_w: f64| self.topology.flow(&asked, force, Some(engine_w)).bus_w + others;
+        let bus = |engine_w: f64| self.topology.bus_w(&asked, force, engine_w) + others;
         let mut one = force * asked.speed_m_s + demand.shaft_power_w + others;
         let mut at_one = bus(one);
         let mut two = one + at_one;
@@ -360,7 +364,12 @@ impl<T: Topology> Driveline for Managed<T> {
             rates[OWN..ends].copy_from_slice(&flow.own_rates[..T::OWN_STATES]);
             if let Some(management) = &self.management {
                 let power_w = engine_w + drawn.store_w - drawn.loss_w;
-                management.flow(&self.outlook(demand, states, power_w), &states[ends..], &mut rates[ends..]);
+                let outlook = if management.flows_by_outlook() {
+                    self.outlook(demand, states, power_w)
+                } else {
+                    Outlook::default()
+                };
+                management.flow(&outlook, &states[ends..], &mut rates[ends..]);
             }
         }
         let force_n = force * Self::way(demand);

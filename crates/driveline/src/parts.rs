@@ -100,6 +100,7 @@ pub(crate) fn increasing(parameter: &str, values: &[f64], least: usize) -> Resul
 const SHORT: usize = 24;
 
 /// The piece of an increasing grid that holds a value, and how far along it; ends are kept outside.
+#[inline]
 pub(crate) fn place(grid: &[f64], value: f64) -> (usize, f64) {
     let last = grid.len() - 2;
     // Most grids are even or nearly so: where they would have it is looked at first.

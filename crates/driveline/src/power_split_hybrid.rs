@@ -70,7 +70,46 @@ pub struct PowerSplit {
 /// A torque beyond a limit is weighed as power at this speed more, so that it counts at rest too [rad/s].
 const WEIGHING_RAD_S: f64 = 10.0;
 
+/// What turns and what flows behind the carrier of the planetary.
+struct Turned {
+    sun_rad_s: f64,
+    sun_n_m: f64,
+    motor_rad_s: f64,
+    motor_n_m: f64,
+    motor_loss_w: f64,
+    generator_loss_w: f64,
+    /// Power that goes out to the wheels behind the ring.
+    out_w: f64,
+    bus_w: f64,
+}
+
 impl PowerSplit {
+    /// For a force, and a power that goes through the carrier at its speed.
+    fn turned(&self, ring: f64, force_n: f64, (through_w, carrier): (f64, f64)) -> Turned {
+        let k = self.planetary_ratio;
+        let torque = if carrier > 0.0 { through_w / carrier } else { 0.0 };
+        let sun_rad_s = (1.0 + k) * carrier - k * ring;
+        let (sun_n_m, ring_n_m) = (torque / (1.0 + k), torque * k / (1.0 + k));
+        let generated_w = sun_n_m * sun_rad_s;
+
+        let gear = if force_n >= 0.0 { 1.0 / self.gear_efficiency } else { self.gear_efficiency };
+        let out_n_m = force_n * self.wheel_radius_m / self.final_ratio * gear;
+        let motor_rad_s = self.motor_ratio * ring;
+        let motor_n_m = (out_n_m - ring_n_m) / self.motor_ratio;
+        let motor_loss_w = self.motor.loss_w(motor_n_m, motor_rad_s);
+        let generator_loss_w = self.generator.loss_w(sun_n_m, sun_rad_s);
+        Turned {
+            sun_rad_s,
+            sun_n_m,
+            motor_rad_s,
+            motor_n_m,
+            motor_loss_w,
+            generator_loss_w,
+            out_w: out_n_m * ring,
+            bus_w: motor_n_m * motor_rad_s + motor_loss_w - generated_w + generator_loss_w,
+        }
+    }
+
     fn ring_rad_s(&self, speed_m_s: f64) -> f64 {
         self.final_ratio * speed_m_s / self.wheel_radius_m
     }
@@ -150,7 +189,7 @@ impl Topology for PowerSplit {
 
     fn flow(&self, asked: &Asked, force_n: f64, engine_w: Option<f64>) -> Flow {
         let Asked { demand, speed_m_s, at, motor_c, own } = *asked;
-        let (k, ring) = (self.planetary_ratio, self.ring_rad_s(speed_m_s));
+        let ring = self.ring_rad_s(speed_m_s);
         let (running, carrier) = match engine_w {
             Some(engine_w) => {
                 let speed = self.engine_rad_s(asked, engine_w, ring);
@@ -161,26 +200,17 @@ impl Topology for PowerSplit {
             None => (self.engine.stopped(&at), self.engine.idle_rad_s()),
         };
         let through_w = engine_w.unwrap_or(0.0) - demand.shaft_power_w;
-        let torque = if carrier > 0.0 { through_w / carrier } else { 0.0 };
-        let sun = (1.0 + k) * carrier - k * ring;
-        let (sun_n_m, ring_n_m) = (torque / (1.0 + k), torque * k / (1.0 + k));
-        let generated_w = sun_n_m * sun;
-
-        let gear = if force_n >= 0.0 { 1.0 / self.gear_efficiency } else { self.gear_efficiency };
-        let out_n_m = force_n * self.wheel_radius_m / self.final_ratio * gear;
-        let motor_rad_s = self.motor_ratio * ring;
-        let motor_n_m = (out_n_m - ring_n_m) / self.motor_ratio;
-        let motor_loss_w = self.motor.loss_w(motor_n_m, motor_rad_s);
-        let generator_loss_w = self.generator.loss_w(sun_n_m, sun);
+        let turned = self.turned(ring, force_n, (through_w, carrier));
+        let Turned { sun_n_m, motor_rad_s, motor_n_m, motor_loss_w, generator_loss_w, .. } = turned;
         let limit = self.motor.limit_n_m(motor_rad_s, motor_c);
-        let holds = self.generator.limit_n_m(sun, own[0]);
+        let holds = self.generator.limit_n_m(turned.sun_rad_s, own[0]);
         let weigh = WEIGHING_RAD_S + motor_rad_s;
         Flow {
             running,
-            bus_w: motor_n_m * motor_rad_s + motor_loss_w - generated_w + generator_loss_w,
+            bus_w: turned.bus_w,
             asked_w: ((motor_n_m - limit) * weigh).max((-sun_n_m - holds) * weigh),
             pushed_w: ((-motor_n_m - limit) * weigh).max((sun_n_m - holds) * weigh),
-            transmission_w: out_n_m * ring - force_n * speed_m_s,
+            transmission_w: turned.out_w - force_n * speed_m_s,
             motor_loss_w,
             generator_loss_w,
             motor_rad_s,
@@ -189,5 +219,11 @@ impl Topology for PowerSplit {
             own_rates: [self.generator.warming_k_s(generator_loss_w, own[0]), 0.0],
             cvt_ratio: f64::NAN,
         }
+    }
+
+    fn bus_w(&self, asked: &Asked, force_n: f64, engine_w: f64) -> f64 {
+        let ring = self.ring_rad_s(asked.speed_m_s);
+        let carrier = self.engine_rad_s(asked, engine_w, ring);
+        self.turned(ring, force_n, (engine_w - asked.demand.shaft_power_w, carrier)).bus_w
     }
 }

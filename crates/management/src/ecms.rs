@@ -93,6 +93,10 @@ impl Management for Ecms {
         switched(at, self.levels, self.least_time_s, &mut states[0], price)
     }
 
+    fn flows_by_outlook(&self) -> bool {
+        false
+    }
+
     fn flow(&self, _: &Outlook, _: &[f64], rates: &mut [f64]) {
         rates[0] = 1.0;
     }

@@ -113,6 +113,10 @@ impl Management for Thresholds {
         Share { engine_runs: runs, engine_w }
     }
 
+    fn flows_by_outlook(&self) -> bool {
+        false
+    }
+
     fn flow(&self, _: &Outlook, _: &[f64], rates: &mut [f64]) {
         rates[CHARGING] = 0.0;
         rates[SINCE] = 1.0;

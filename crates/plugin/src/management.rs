@@ -64,6 +64,11 @@ pub trait Management: Debug + Send + Sync {
     /// Shares the power until the next step; may set its own states.
     fn share(&self, at: &dyn Stores, states: &mut [f64]) -> Share;
 
+    /// Whether how its states change by themselves hangs on what is asked and what is there; one that counts time is not told.
+    fn flows_by_outlook(&self) -> bool {
+        true
+    }
+
     /// How its states change by themselves, each per second; a timer runs at 1.
     fn flow(&self, outlook: &Outlook, states: &[f64], rates: &mut [f64]) {
         let _ = (outlook, states, rates);

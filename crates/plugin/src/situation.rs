@@ -51,6 +51,7 @@ impl Air {
     ///
     /// Source: vector form of the drag equation; Hucho, *Aerodynamics of Road Vehicles* (1998), chapter 4.
     /// The drag area is taken as the same from every side.
+    #[inline]
     pub fn drag_n(&self, drag_area_m2: f64, speed_m_s: f64, heading_rad: f64) -> f64 {
         if self.wind_speed_m_s == 0.0 {
             return -0.5 * self.density_kg_m3 * drag_area_m2 * speed_m_s.abs() * speed_m_s;

@@ -16,6 +16,7 @@ mod conversion;
 mod correct;
 mod cut;
 mod describe;
+mod ends;
 mod error;
 mod folder;
 mod form;

@@ -1,6 +1,7 @@
 //! The rows of a text log, streamed into columns.
 
 use crate::cells::{Cell, number};
+use crate::ends::LineEnds;
 use crate::layout::Layout;
 use crate::plan::Plan;
 use crate::source::failed;
@@ -63,7 +64,7 @@ impl<'a> Rows<'a> {
             .delimiter(self.layout.delimiter)
             .comment(self.layout.comment)
             .buffer_capacity(1 << 16)
-            .from_reader(stream);
+            .from_reader(LineEnds::new(stream));
         let mut record = StringRecord::new();
         let mut line = self.layout.skip;
         while limit.is_none_or(|limit| self.read < limit) {
@@ -72,8 +73,12 @@ impl<'a> Rows<'a> {
                 Ok(false) => break,
                 Err(error) => return Err(stopped(self.path, line, error)),
             }
-            let within = record.position().map_or(0, csv::Position::line);
-            line = self.layout.skip + usize::try_from(within).unwrap_or(0);
+            // Where a record begins counts blank lines and comments before it; where it ends is the line behind it.
+            let behind = usize::try_from(reader.position().line()).unwrap_or(0);
+            let within = record.iter().map(|cell| cell.matches('\n').count()).sum::<usize>();
+            // A quotation that is never closed has no line behind it.
+            let unclosed = record.iter().next_back().is_some_and(|cell| cell.ends_with('\n'));
+            line = self.layout.skip + (behind + usize::from(unclosed)).saturating_sub(1 + within);
             if record.len() == 1 && record[0].trim().is_empty() {
                 continue;
             }
@@ -173,7 +178,7 @@ impl<'a> Rows<'a> {
         RecordingError::Cell {
             at: Place::new(self.path, line, character),
             column: self.layout.header[column].clone(),
-            found: record[column].trim().to_owned(),
+            found: shortened(&record[column]),
             expected,
         }
     }
@@ -197,6 +202,15 @@ impl<'a> Rows<'a> {
             notices.push(Notice::new(self.run, NoticeKind::Nan, text).count(self.without_values));
         }
     }
+}
+
+/// The first line of a cell, if it is no longer than a line that one reads: a quotation mark that is never closed takes in all the
+/// rest of a file.
+fn shortened(cell: &str) -> String {
+    const MOST: usize = 60;
+    let first = cell.trim().lines().next().unwrap_or_default();
+    let short: String = first.chars().take(MOST).collect();
+    if short.len() < cell.trim().len() { format!("{short}…") } else { short }
 }
 
 fn stopped(path: &Path, line: usize, error: csv::Error) -> RecordingError {

@@ -8,10 +8,10 @@ use crate::schema::{FidelityFile, ScenarioFile, VehicleFile};
 use crate::trailer::{TRAILER_AXLE_BOUNDS, TRAILER_BOUNDS, TrailerFile, trailer};
 use headland_body::{
     AxleBody, BodyError, Chassis, Differential, Payload, RunError, Steering, SteeringMode, Suspension, check,
-    simulate,
+    simulate_unless,
 };
 use headland_plugin::Bound;
-use headland_sim::{Cycle, Model, Outcome};
+use headland_sim::{Cycle, Model, Outcome, Simulation};
 use serde::Deserialize;
 
 #[derive(Debug, Deserialize)]
@@ -114,12 +114,24 @@ impl Fidelity {
     /// # Errors
     /// [`RunError`] where a body cannot stand on its ground.
     pub fn simulate(&self, model: &Model, cycle: &Cycle) -> Result<Outcome, RunError> {
+        self.simulate_unless(model, cycle, &|| false)
+    }
+
+    /// As [`Fidelity::simulate`], and ends as [`headland_sim::End::Interrupted`] soon after `stop` says so.
+    ///
+    /// # Errors
+    /// As [`Fidelity::simulate`].
+    pub fn simulate_unless(
+        &self,
+        model: &Model,
+        cycle: &Cycle,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Outcome, RunError> {
+        let simulation = || Simulation::new(model, cycle).unless(stop);
         match self {
-            Self::Longitudinal => Ok(headland_sim::simulate(model, cycle)?),
-            Self::QuasiStatic { record_s } => {
-                Ok(headland_sim::simulate_quasi_static(model, cycle, *record_s)?)
-            }
-            Self::RigidBody { chassis, record_s } => simulate(model, chassis, cycle, *record_s),
+            Self::Longitudinal => Ok(simulation().run()?),
+            Self::QuasiStatic { record_s } => Ok(simulation().quasi_static(*record_s).run()?),
+            Self::RigidBody { chassis, record_s } => simulate_unless(model, chassis, cycle, *record_s, stop),
         }
     }
 }

@@ -276,7 +276,14 @@ impl Builder {
             std::fs::read(path).map_err(|error| unreadable(error.to_string()))?
         };
         let text = String::from_utf8(bytes).map_err(|error| {
-            unreadable(format!("is not UTF-8 text: byte {}", error.utf8_error().valid_up_to()))
+            let good = String::from_utf8_lossy(&error.as_bytes()[..error.utf8_error().valid_up_to()]);
+            let (line, column) =
+                (good.matches('\n').count() + 1, good.lines().last().unwrap_or("").chars().count() + 1);
+            let column = if good.ends_with('\n') { 1 } else { column };
+            let byte = error.as_bytes()[error.utf8_error().valid_up_to()];
+            unreadable(format!(
+                "found the byte 0x{byte:02X} in line {line}, column {column}, expected UTF-8 text"
+            ))
         })?;
         let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
         if text.trim().is_empty() {

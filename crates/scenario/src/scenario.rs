@@ -219,7 +219,7 @@ fn parse(document: &Document) -> Result<ScenarioFile, ScenarioError> {
 }
 
 /// Bounds of the scenario's own numbers.
-const BOUNDS: [(&str, Bound); 20] = [
+const BOUNDS: [(&str, Bound); 22] = [
     ("vehicle.mass_kg", Bound::Positive),
     ("vehicle.rotating_mass_kg", Bound::NotNegative),
     ("vehicle.drag_area_m2", Bound::NotNegative),
@@ -235,6 +235,8 @@ const BOUNDS: [(&str, Bound); 20] = [
     ("air.wind.from_rad", Bound::Finite),
     ("air.temperature_c", Bound::Within(-90.0, 70.0)),
     ("gravity_m_s2", Bound::Positive),
+    ("start.position_m", Bound::Finite),
+    ("start.speed_m_s", Bound::Finite),
     ("simulation.step_s", Bound::Within(1e-6, LONGEST_STEP_S)),
     ("simulation.longest_s", Bound::Positive),
     ("simulation.fidelity.record_s", Bound::Positive),

@@ -13,7 +13,7 @@
 
 use crate::Model;
 use crate::ledger::{
-    AIR, AUXILIARY, BRAKES, DRAWBAR, FIRST_LOSS, HYDRAULICS, PTO, SLOPE, SOIL, SOURCE, Slots,
+    AIR, AUXILIARY, BRAKES, DRAWBAR, FIRST_LOSS, HYDRAULICS, LOSSES_AT_ONCE, PTO, SLOPE, SOIL, SOURCE, Slots,
 };
 use crate::model::Layout;
 use crate::wheels::WheelScratch;
@@ -477,11 +477,15 @@ fn book(instant: &Instant, way: f64, given: &Given, slots: &Slots, actions: &[Ac
     powers[PTO] = instant.pto_power_w;
     powers[HYDRAULICS] = instant.hydraulic_power_w;
     powers[AUXILIARY] = given.auxiliary_power_w.unwrap_or(0.0);
+    let accounts = powers[FIRST_LOSS..].chunks_exact_mut(LOSSES_AT_ONCE);
+    let (losses, _) = instant.delivery.losses_w.as_chunks::<LOSSES_AT_ONCE>();
+    let groups = (slots.first_effect - FIRST_LOSS).div_ceil(LOSSES_AT_ONCE);
+    for (group, losses) in accounts.zip(losses).take(groups) {
+        group.copy_from_slice(losses);
+    }
     if let Some(slip) = slots.slip {
         powers[slip] = instant.slip_w;
     }
-    let losses = slots.first_effect - FIRST_LOSS;
-    powers[FIRST_LOSS..slots.first_effect].copy_from_slice(&instant.delivery.losses_w[..losses]);
     for (power, action) in powers[slots.first_effect..].iter_mut().zip(actions) {
         *power = (way * instant.resistance_n(action) - action.force_n) * speed_m_s + instant.power_w(action);
     }

@@ -1,13 +1,13 @@
 //! Driving a cycle of phases, one after the other.
 
 use crate::balance::{Command, Given, Instant};
-use crate::carriage::Carriage;
 use crate::ending::Ending;
 use crate::ledger::Ledger;
 use crate::plan::{Cycle, Driven, Phase, Setting};
 use crate::recorder::Recorder;
+use crate::simulation::Simulation;
 use crate::step::{Machine, Moment};
-use crate::{End, Model, Outcome};
+use crate::{End, Outcome};
 use headland_plugin::Mode;
 use headland_trace::TraceError;
 use std::collections::BTreeMap;
@@ -15,52 +15,11 @@ use std::collections::BTreeMap;
 /// A run of more steps would fill the memory: 10 million take some gigabytes, and are a day at 10 ms.
 pub(crate) const MOST_STEPS: usize = 10_000_000;
 
-/// Drives the model through the cycle.
-///
-/// # Errors
-/// [`TraceError`] where the steps do not make a trace, which would be a bug.
-pub fn simulate(model: &Model, cycle: &Cycle) -> Result<Outcome, TraceError> {
-    drive(Running::new(model, cycle, None, 0.0), cycle)
-}
-
-/// Drives the model through the cycle, and asks it once a step, at the middle, wherever its motion is known beforehand: where a
-/// driver who knows the resistances follows a speed over time, and the drive can. A row of the trace is written at the middle of
-/// such a step where the last one is `record_s` [s] ago, and at the end of each phase.
-///
-/// # Errors
-/// As [`simulate`].
-pub fn simulate_quasi_static(model: &Model, cycle: &Cycle, record_s: f64) -> Result<Outcome, TraceError> {
-    let run = Running::new(model, cycle, None, record_s);
-    drive(Running { quasi_static: true, ..run }, cycle)
-}
-
-/// Drives the model through the cycle on a carriage that moves it; a row of the trace is written every `record_s` [s], and
-/// at the end of each phase.
-///
-/// # Errors
-/// As [`simulate`].
-pub fn simulate_on<'a>(
-    model: &'a Model,
-    carriage: Box<dyn Carriage + 'a>,
-    cycle: &'a Cycle,
-    record_s: f64,
-) -> Result<Outcome, TraceError> {
-    drive(Running::new(model, cycle, Some(carriage), record_s), cycle)
-}
-
-fn drive(mut run: Running, cycle: &Cycle) -> Result<Outcome, TraceError> {
-    let mut end = End::Finished;
-    for (index, phase) in cycle.phases.iter().enumerate() {
-        if let Err(reason) = run.drive_one(index, phase) {
-            end = End::Stopped { time_s: run.machine.time_s, position_m: run.machine.position_m(), reason };
-            break;
-        }
-    }
-    run.finish(end)
-}
+/// So many steps are made before it is asked again whether somebody interrupts.
+const STEPS_BETWEEN_LOOKS: usize = 32;
 
 /// Why a phase cannot go on, if it cannot.
-pub(crate) type Hopeless<'h> = &'h dyn Fn(&Machine, &Instant) -> Option<String>;
+pub(crate) type Hopeless<'h> = Option<&'h dyn Fn(&Machine, &Instant) -> Option<String>>;
 
 /// A cycle that is being driven.
 pub(crate) struct Running<'a> {
@@ -79,15 +38,15 @@ pub(crate) struct Running<'a> {
     driven: Vec<Driven>,
     /// What was found of each group that has a guard.
     entered: BTreeMap<usize, bool>,
+    stop: &'a dyn Fn() -> bool,
+    /// Steps after which it is asked again whether to go on.
+    next_look: usize,
+    interrupted: bool,
 }
 
 impl<'a> Running<'a> {
-    fn new(
-        model: &'a Model,
-        cycle: &'a Cycle,
-        carriage: Option<Box<dyn Carriage + 'a>>,
-        record_s: f64,
-    ) -> Self {
+    pub(crate) fn new(simulation: Simulation<'a>) -> Self {
+        let Simulation { model, cycle, carriage, record_s, quasi_static, stop } = simulation;
         let Cycle { start, phases, .. } = cycle;
         let remembers =
             |phase: &Phase| matches!(phase, Phase::With { setting, .. } if setting.driver.is_some());
@@ -101,7 +60,7 @@ impl<'a> Running<'a> {
             recorder: Recorder::new(&machine),
             machine,
             record_s,
-            quasi_static: false,
+            quasi_static,
             cycle,
             extent_m: model.terrain.extent_m(),
             target_m_s: start.speed_m_s,
@@ -109,7 +68,47 @@ impl<'a> Running<'a> {
             setting: Setting::default(),
             driven: Vec::new(),
             entered: BTreeMap::new(),
+            stop,
+            next_look: 0,
+            interrupted: false,
         }
+    }
+
+    /// Drives every phase, or as far as it comes.
+    pub(crate) fn drive_all(mut self) -> Result<Outcome, TraceError> {
+        let mut end = End::Finished;
+        for (index, phase) in self.cycle.phases.iter().enumerate() {
+            if let Err(reason) = self.drive_one(index, phase) {
+                let (time_s, position_m) = (self.machine.time_s, self.machine.position_m());
+                end = if self.interrupted {
+                    End::Interrupted { time_s, position_m }
+                } else {
+                    End::Stopped { time_s, position_m, reason }
+                };
+                break;
+            }
+        }
+        self.finish(end)
+    }
+
+    /// Why there is to be no further step, apart from what the machine says.
+    #[allow(clippy::inline_always, reason = "the inner loop")]
+    #[inline(always)]
+    pub(crate) fn look_up(&mut self) -> Result<(), String> {
+        if self.machine.steps < self.next_look { Ok(()) } else { self.look_around() }
+    }
+
+    #[inline(never)]
+    fn look_around(&mut self) -> Result<(), String> {
+        if self.machine.steps >= MOST_STEPS {
+            return Err(format!("it takes more than {MOST_STEPS} steps of {} s", self.cycle.step_s));
+        }
+        if (self.stop)() {
+            self.interrupted = true;
+            return Err("it was interrupted".to_owned());
+        }
+        self.next_look = MOST_STEPS.min(self.machine.steps + STEPS_BETWEEN_LOOKS);
+        Ok(())
     }
 
     /// Drives a phase and writes down what became of it.
@@ -209,15 +208,11 @@ impl<'a> Running<'a> {
         if over {
             return Ok(Some(machine.time_s >= ending.end_s || ending.left(&machine.moment()) <= 0.0));
         }
-        if let Some(reason) = machine.exhausted(&instant).or_else(|| hopeless(machine, &instant)) {
+        if let Some(reason) = machine.no_further(&instant, hopeless) {
             return Err(reason);
         }
-        if let Some(reason) = machine.trouble(&instant) {
-            return Err(reason);
-        }
-        if machine.steps >= MOST_STEPS {
-            return Err(format!("it takes more than {MOST_STEPS} steps of {} s", self.cycle.step_s));
-        }
+        self.look_up()?;
+        let machine = &mut self.machine;
         if machine.time_s >= self.cycle.longest_s {
             return Err(format!("the phase has not ended after {} s", self.cycle.longest_s));
         }

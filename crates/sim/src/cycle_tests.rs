@@ -70,7 +70,7 @@ fn drive_until(until: Until) -> Phase {
 fn reason(outcome: &Outcome) -> (f64, f64, &str) {
     match &outcome.end {
         End::Stopped { time_s, position_m, reason } => (*time_s, *position_m, reason),
-        End::Finished => panic!("it was driven to its end: {:?}", outcome.phases),
+        _ => panic!("it was driven to its end: {:?}", outcome.phases),
     }
 }
 

@@ -40,19 +40,19 @@ impl Running<'_> {
                 let ending = Ending::of(&Until::Elapsed(*for_s), &self.machine)?;
                 if self.quasi_static || self.setting.driver.is_some() {
                     let reference = Reference::steady(begin_s, self.target_m_s);
-                    return self.follow(&reference, &ending, &never);
+                    return self.follow(&reference, &ending, None);
                 }
                 let (gain, target, given) = (self.cycle.driver_gain_per_s, self.target_m_s, self.given());
                 let control =
                     |at: &Moment| (Command::Accelerate(gain * (target - at.speed_m_s)), given(at.time_s));
-                self.until(&control, &ending, f64::INFINITY, &never)?;
+                self.until(&control, &ending, f64::INFINITY, None)?;
                 Ok(ending.told(&self.machine.moment()))
             }
             Phase::Coast { until } => self.coast(until),
             Phase::Follow { profile } => {
                 let last_s = profile.last().map_or(0.0, |(at_s, _)| *at_s);
                 let ending = Ending::at_time(begin_s + last_s, "at the end of the profile".to_owned());
-                self.follow(&Reference::along(begin_s, profile), &ending, &never)
+                self.follow(&Reference::along(begin_s, profile), &ending, None)
             }
             Phase::Drive { speed_m_s, acceleration_m_s2, tolerance_m_s, until } => {
                 self.drive_at(*speed_m_s, *acceleration_m_s2, *tolerance_m_s, until)
@@ -86,7 +86,7 @@ impl Running<'_> {
         let patience_s = self.machine.model.driveline.patience_s();
         // How far it came, and when.
         let best = Cell::new((f64::NEG_INFINITY, self.machine.time_s));
-        self.until(&control, &ending, f64::INFINITY, &|machine, instant| {
+        self.until(&control, &ending, f64::INFINITY, Some(&|machine, instant| {
             let progress = machine.speed_m_s() * rate.signum();
             if progress > best.get().0 + PROGRESS_M_S {
                 best.set((progress, machine.time_s));
@@ -104,7 +104,7 @@ impl Running<'_> {
                     instant.delivery.force_n
                 )
             })
-        })?;
+        }))?;
         Ok(ending.told(&self.machine.moment()))
     }
 
@@ -115,10 +115,15 @@ impl Running<'_> {
         // Time comes to a vehicle at rest too; and one that was at rest may be waiting for a slope's pull.
         let moving = self.machine.speed_m_s() != 0.0;
         let waits = moving && !ending.comes_at_rest() && *until != Until::Stopped;
-        let result = self.until(&control, &ending, f64::INFINITY, &|machine, instant| {
-            (waits && machine.speed_m_s() == 0.0 && instant.acceleration_m_s2 == 0.0)
-                .then(|| "the vehicle has come to rest before the end of the coasting phase".to_owned())
-        });
+        let result = self.until(
+            &control,
+            &ending,
+            f64::INFINITY,
+            Some(&|machine, instant| {
+                (waits && machine.speed_m_s() == 0.0 && instant.acceleration_m_s2 == 0.0)
+                    .then(|| "the vehicle has come to rest before the end of the coasting phase".to_owned())
+            }),
+        );
         self.target_m_s = self.machine.speed_m_s();
         result.map(|_| ending.told(&self.machine.moment()))
     }
@@ -147,7 +152,7 @@ impl Running<'_> {
                 let slowing = -way * acceleration_m_s2;
                 let control = |at: &Moment| (Command::Accelerate(slowing), given(at.time_s));
                 let rests = |machine: &Machine, _: &Instant| (machine.speed_m_s() == 0.0).then(String::new);
-                match self.until(&control, &ending, f64::INFINITY, &rests) {
+                match self.until(&control, &ending, f64::INFINITY, Some(&rests)) {
                     Err(reason) if reason.is_empty() => {}
                     Err(reason) => return Err(reason),
                     Ok(_) => return Ok(ending.told(&self.machine.moment())),
@@ -159,7 +164,7 @@ impl Running<'_> {
             ending = ending.without_rest();
         }
         let reference = Reference::ramp(self.machine.time_s, speed, target, acceleration_m_s2);
-        self.follow(&reference, &ending, &|machine, instant| {
+        self.follow(&reference, &ending, Some(&|machine, instant| {
             let behind = way * (reference.speed_m_s(machine.time_s) - machine.speed_m_s());
             let stalled =
                 machine.speed_m_s() == 0.0 && way * instant.acceleration_m_s2 <= 0.0 && behind > 0.0;
@@ -177,7 +182,7 @@ impl Running<'_> {
                     machine.speed_m_s()
                 )
             })
-        })
+        }))
     }
 
     /// Follows a reference piece by piece, so that no step crosses one of its corners.
@@ -223,12 +228,12 @@ impl Running<'_> {
             let acceleration = slope * at.speed_m_s + gain * (speed - at.speed_m_s);
             (Command::Accelerate(acceleration.clamp(-most, most)), given(at.time_s))
         };
-        self.until(&control, &ending, f64::INFINITY, &|machine, instant| {
+        self.until(&control, &ending, f64::INFINITY, Some(&|machine, instant| {
             (machine.speed_m_s() == 0.0 && instant.acceleration_m_s2 <= 0.0).then(|| {
                 let force = instant.delivery.force_n;
                 format!("the vehicle stands on its way: the {force:.0} N of its drive do not overcome the resistances")
             })
-        })?;
+        }))?;
         self.target_m_s = self.machine.speed_m_s();
         Ok(ending.told(&self.machine.moment()))
     }
@@ -242,14 +247,10 @@ impl Running<'_> {
         let control = |at: &Moment| (Command::Accelerate(0.0), given(at.time_s));
         if self.quasi_static {
             let rest = Reference::steady(self.machine.time_s, 0.0);
-            self.along((&rest, 0), &control, ending, f64::INFINITY, &never)?;
+            self.along((&rest, 0), &control, ending, f64::INFINITY, None)?;
         } else {
-            self.until(&control, ending, f64::INFINITY, &never)?;
+            self.until(&control, ending, f64::INFINITY, None)?;
         }
         Ok(ending.told(&self.machine.moment()))
     }
-}
-
-fn never(_: &Machine, _: &Instant) -> Option<String> {
-    None
 }

@@ -78,6 +78,9 @@ pub(crate) const HYDRAULICS: usize = 7;
 pub(crate) const AUXILIARY: usize = 8;
 pub(crate) const MASS_CHANGE: usize = 9;
 pub(crate) const FIRST_LOSS: usize = 10;
+/// So many losses are written at once, and what stands behind them after that: a copy of a length that is known beforehand is
+/// no call.
+pub(crate) const LOSSES_AT_ONCE: usize = 4;
 
 /// Names of the accounts, by index: the fixed ones, the driveline's losses, the effects.
 #[derive(Debug)]
@@ -113,5 +116,11 @@ impl Slots {
             names.len() - 1
         });
         Self { names, first_effect, slip }
+    }
+
+    /// How many accounts there are, those without a name included into which losses are written that nobody has.
+    pub fn count(&self) -> usize {
+        let losses = self.first_effect - FIRST_LOSS;
+        self.names.len().max(FIRST_LOSS + losses.next_multiple_of(LOSSES_AT_ONCE))
     }
 }

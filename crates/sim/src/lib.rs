@@ -30,6 +30,7 @@ mod reference;
 mod replay;
 mod rolling;
 mod root;
+mod simulation;
 mod slope;
 mod step;
 mod traction;
@@ -37,11 +38,11 @@ mod wheels;
 
 pub use axles::{Axle, Axles};
 pub use carriage::{AxleMotion, Carriage, Motion, Push, Stepped};
-pub use cycle::{simulate, simulate_on, simulate_quasi_static};
 pub use ledger::{Entry, Ledger};
 pub use model::{Model, Named, Resistance, Vehicle};
 pub use plan::{Cycle, Driven, EngineSpeed, Guard, Phase, Pi, Setting, Start, Until};
 pub use replay::{Drive, Inputs, Replay, ReplayError, replay};
+pub use simulation::{Simulation, simulate};
 pub use slope::{LocalFit, local_fit, travelled};
 
 use headland_trace::Trace;
@@ -75,5 +76,12 @@ pub enum End {
         position_m: f64,
         /// Why, in a sentence.
         reason: String,
+    },
+    /// The user stopped it; what was simulated up to there is kept.
+    Interrupted {
+        /// When [s].
+        time_s: f64,
+        /// Where along the path [m].
+        position_m: f64,
     },
 }

@@ -11,10 +11,11 @@
 //! falls short, a speed by place, a coast-down, an end that comes within the step) is stepped by Runge and Kutta.
 
 use crate::balance::Instant;
-use crate::cycle::{Hopeless, MOST_STEPS, ON_TIME, Running, sliver};
+use crate::cycle::{Hopeless, ON_TIME, Running, sliver};
 use crate::ending::Ending;
 use crate::reference::Reference;
 use crate::step::{Control, FIRST_STATE, Machine, Moment, POSITION, SPEED, sign};
+use headland_plugin::{Delivery, Demand};
 
 /// A speed nearer than this to what is wanted is what is wanted [m/s]: what the rounding of many steps leaves.
 const AS_WANTED_M_S: f64 = 1e-9;
@@ -80,63 +81,77 @@ impl Running<'_> {
         let end_s = if step_s == left_s { piece_end_s } else { time_s + step_s };
         let ((from_m_s, rate), (to_m_s, _)) = (reference.on(piece, time_s), reference.on(piece, end_s));
         let known = (speed_m_s - from_m_s).abs() <= AS_WANTED_M_S && speed_m_s >= 0.0 && to_m_s >= 0.0;
-        if !known || machine.steps >= MOST_STEPS || time_s >= self.cycle.longest_s {
+        if !known || time_s >= self.cycle.longest_s {
             return Ok(Met::Not);
         }
-        let Some(instant) = machine.middle(step_s, to_m_s, rate, control) else { return Ok(Met::Not) };
+        self.look_up()?;
+        let machine = &mut self.machine;
+        // What is asked comes of the motion; where the drive gives it, the motion is what comes of that.
+        let instant = machine.at_middle(step_s, to_m_s, control);
+        let met = (instant.acceleration_m_s2 - rate).abs() <= AS_WANTED_M_S2 * (1.0 + rate.abs());
+        if !met {
+            return Ok(Met::Not);
+        }
+        machine.foresee_end(step_s, to_m_s, instant.effective_mass_kg);
         if ending.left(&machine.at_end(end_s)) <= 0.0 {
             return Ok(Met::Not);
         }
-        machine.swap_middle(0.5 * step_s);
-        let reason = machine
-            .stuck()
-            .or_else(|| machine.exhausted(&instant))
-            .or_else(|| hopeless(machine, &instant))
-            .or_else(|| machine.trouble(&instant));
-        if reason.is_none() && machine.time_s > last_row_s + ON_TIME * self.record_s {
-            self.recorder.push(machine, &instant);
-        }
-        machine.swap_middle(-0.5 * step_s);
-        machine.time_s = time_s;
-        if let Some(reason) = reason {
+        let half_s = 0.5 * step_s;
+        let due = time_s + half_s > last_row_s + ON_TIME * self.record_s;
+        // What others may look at is a copy, made where they look: the instant itself is never put together.
+        if due || hopeless.is_some() || machine.is_watched() {
+            let seen = instant;
+            self.look(&seen, half_s, due, hopeless)?;
+        } else if machine.layout.driveline.is_empty() {
+            // Who remembers nothing is never exhausted.
+        } else if let Some(reason) = machine.exhausted_in_the_middle(instant.demand, instant.delivery) {
             return Err(reason);
         }
-        machine.pass(end_s);
+        self.machine.pass(end_s);
         self.within_the_path()?;
-        Ok(Met::Stepped)
+        // A phase that ends here has more to do.
+        Ok(if end_s == piece_end_s && end_s < ending.end_s { Met::PieceEnds } else { Met::Stepped })
+    }
+
+    /// Asks everyone whether it can go on, and writes a row where one is due.
+    #[inline(never)]
+    fn look(&mut self, instant: &Instant, half_s: f64, due: bool, hopeless: Hopeless) -> Result<(), String> {
+        let machine = &mut self.machine;
+        let begin_s = machine.time_s;
+        machine.swap_middle(half_s);
+        let reason = machine.stuck().or_else(|| machine.no_further(instant, hopeless));
+        if reason.is_none() && due {
+            self.recorder.push(machine, instant);
+        }
+        machine.swap_middle(-half_s);
+        machine.time_s = begin_s;
+        reason.map_or(Ok(()), Err)
     }
 }
 
 impl Machine<'_> {
-    /// The balance in the middle of a step to the speed `to_m_s` at the rate `rate` [m/s²], once the driveline has decided;
-    /// `None` where another acceleration comes of it. What the step comes to waits for [`Machine::pass`].
+    /// The balance in the middle of a step to the speed `to_m_s`, once the driveline has decided.
     #[allow(clippy::inline_always, reason = "as the balance: nothing is put together that nobody looks at")]
     #[inline(always)]
-    fn middle(&mut self, step_s: f64, to_m_s: f64, rate: f64, control: &impl Control) -> Option<Instant> {
-        let mut decided = false;
-        let instant = loop {
-            let instant = self.ask_middle(step_s, to_m_s, control);
-            if decided || !self.decide(&instant) {
-                break instant;
-            }
-            decided = true;
-        };
-        let met = (instant.acceleration_m_s2 - rate).abs() <= AS_WANTED_M_S2 * (1.0 + rate.abs());
-        if !met {
-            return None;
-        }
+    fn at_middle(&mut self, step_s: f64, to_m_s: f64, control: &impl Control) -> Instant {
+        let instant = self.ask_middle(step_s, to_m_s, control);
+        if self.decide(&instant) { self.ask_middle(step_s, to_m_s, control) } else { instant }
+    }
+
+    /// Puts together where it comes to at the end of the step, for [`Machine::pass`].
+    #[allow(clippy::inline_always, reason = "as the balance")]
+    #[inline(always)]
+    fn foresee_end(&mut self, step_s: f64, to_m_s: f64, mass_kg: f64) {
         let speed_m_s = self.y[SPEED];
-        if instant.effective_mass_kg != self.mass_kg {
-            self.book_mass(instant.effective_mass_kg);
+        if mass_kg != self.mass_kg {
+            self.book_mass(mass_kg);
         }
-        for ((value, start), rate) in
-            self.start.iter_mut().zip(&self.y).zip(&self.slopes[0]).skip(FIRST_STATE)
-        {
+        let end = self.start[FIRST_STATE..].iter_mut();
+        for ((value, start), rate) in end.zip(&self.y[FIRST_STATE..]).zip(&self.slopes[0][FIRST_STATE..]) {
             *value = start + step_s * rate;
         }
         self.start[POSITION] = self.y[POSITION] + 0.5 * step_s * (speed_m_s + to_m_s);
         self.start[SPEED] = to_m_s;
-        Some(instant)
     }
 
     /// States in the middle are foreseen with the rates of the step before.
@@ -144,9 +159,11 @@ impl Machine<'_> {
     #[inline(always)]
     fn ask_middle(&mut self, step_s: f64, to_m_s: f64, control: &impl Control) -> Instant {
         let half_s = 0.5 * step_s;
+        let states = FIRST_STATE..FIRST_STATE + self.layout.states.len();
         let mut y = std::mem::take(&mut self.stage);
         let mut slope = std::mem::take(&mut self.slopes[0]);
-        for ((value, start), rate) in y.iter_mut().zip(&self.y).zip(&slope).skip(FIRST_STATE) {
+        let foreseen = y[states.clone()].iter_mut();
+        for ((value, start), rate) in foreseen.zip(&self.y[states.clone()]).zip(&slope[states]) {
             *value = start + half_s * rate;
         }
         let middle_m_s = 0.5 * (self.y[SPEED] + to_m_s);
@@ -155,6 +172,19 @@ impl Machine<'_> {
         let instant = self.derive(self.time_s + half_s, &y, sign(middle_m_s), control, &mut slope);
         (self.stage, self.slopes[0]) = (y, slope);
         instant
+    }
+
+    /// Whether anybody but the driveline may stop it, or looks at what it does.
+    fn is_watched(&self) -> bool {
+        self.carriage.is_some() || self.model.axles.is_some() || !self.model.tasks.is_empty()
+    }
+
+    /// As [`Machine::exhausted`], in the middle of the step.
+    #[inline(never)]
+    fn exhausted_in_the_middle(&self, demand: Demand, delivery: Delivery) -> Option<String> {
+        let own = &self.layout.driveline;
+        let states = &self.stage[FIRST_STATE + own.start..FIRST_STATE + own.end];
+        self.model.driveline.exhausted(&demand, &delivery, states)
     }
 
     /// Stands in the middle of the step, or, with the negative time, back at its begin.

@@ -1,7 +1,7 @@
 //! The quasistatic method against closed forms, observed order, and the method of Runge and Kutta.
 
 use crate::physics_tests::{drive, last, tractor};
-use crate::{Cycle, End, Model, Named, Outcome, Phase, Start, Until, simulate_quasi_static};
+use crate::{Cycle, End, Model, Named, Outcome, Phase, Simulation, Start, Until};
 use headland_plugin::{Action, Delivery, Demand, Driveline, Effect, Readings, Situation, State};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 fn walked(model: &Model, start_m_s: f64, step_s: f64, record_s: f64, phases: Vec<Phase>) -> Outcome {
     let start = Start { position_m: 0.0, speed_m_s: start_m_s };
     let cycle = Cycle { start, phases, driver_gain_per_s: 1.0, step_s, longest_s: 1000.0 };
-    simulate_quasi_static(model, &cycle, record_s).unwrap()
+    Simulation::new(model, &cycle).quasi_static(record_s).run().unwrap()
 }
 
 fn account(outcome: &Outcome, name: &str) -> f64 {

@@ -9,12 +9,14 @@ use crate::step::Moment;
 pub(crate) struct Reference {
     begin_s: f64,
     points: Vec<(f64, f64)>,
+    /// Slope from each point to the next one; none behind the last.
+    rates: Vec<f64>,
 }
 
 impl Reference {
     /// The same speed all the time.
     pub fn steady(begin_s: f64, speed_m_s: f64) -> Self {
-        Self { begin_s, points: vec![(0.0, speed_m_s)] }
+        Self::along(begin_s, &[(0.0, speed_m_s)])
     }
 
     /// From one speed to another at a steady rate.
@@ -23,12 +25,14 @@ impl Reference {
         if lasts_s == 0.0 {
             return Self::steady(begin_s, to_m_s);
         }
-        Self { begin_s, points: vec![(0.0, from_m_s), (lasts_s, to_m_s)] }
+        Self::along(begin_s, &[(0.0, from_m_s), (lasts_s, to_m_s)])
     }
 
     /// Along points of time since the phase began and speed.
     pub fn along(begin_s: f64, points: &[(f64, f64)]) -> Self {
-        Self { begin_s, points: points.to_vec() }
+        let rate = |[(t0, v0), (t1, v1)]: &[(f64, f64); 2]| (v1 - v0) / (t1 - t0);
+        let rates = points.array_windows().map(rate).chain([0.0]).collect();
+        Self { begin_s, points: points.to_vec(), rates }
     }
 
     /// Instants at which its slope changes [s].
@@ -38,14 +42,8 @@ impl Reference {
 
     /// Speed [m/s] and its slope [m/s²] on a piece, counted by its first point; behind the last point it stays.
     pub fn on(&self, piece: usize, time_s: f64) -> (f64, f64) {
-        let (t0, v0) = self.points[piece];
-        match self.points.get(piece + 1) {
-            Some((t1, v1)) => {
-                let rate = (v1 - v0) / (t1 - t0);
-                (v0 + rate * (time_s - self.begin_s - t0), rate)
-            }
-            None => (v0, 0.0),
-        }
+        let ((t0, v0), rate) = (self.points[piece], self.rates[piece]);
+        (v0 + rate * (time_s - self.begin_s - t0), rate)
     }
 
     /// Speed [m/s] and its slope at an instant; the slope behind a corner.

@@ -8,6 +8,7 @@ use crate::Model;
 use crate::balance::{Command, Given, Instant, Point, Scratch};
 use crate::borne::Borne;
 use crate::carriage::Carriage;
+use crate::cycle::Hopeless;
 use crate::ledger::{MASS_CHANGE, Slots};
 use crate::model::Layout;
 use crate::wheels::{AxleState, WheelScratch};
@@ -82,7 +83,7 @@ impl<'a> Machine<'a> {
         let slots = Slots::of(model);
         let mut y = vec![position_m, speed_m_s];
         y.extend(layout.states.iter().map(|(_, initial)| *initial));
-        y.resize(y.len() + slots.names.len(), 0.0);
+        y.resize(y.len() + slots.count(), 0.0);
         let zero = vec![0.0; y.len()];
         let scratch = Scratch {
             actions: vec![headland_plugin::Action::default(); model.effects.len()],
@@ -201,6 +202,13 @@ impl<'a> Machine<'a> {
             return None;
         }
         self.model.driveline.exhausted(&instant.demand, &instant.delivery, &self.states()[own])
+    }
+
+    /// Why it cannot go on from an instant: the driveline, the driver or a task says so.
+    pub fn no_further(&self, instant: &Instant, hopeless: Hopeless) -> Option<String> {
+        self.exhausted(instant)
+            .or_else(|| hopeless.and_then(|hopeless| hopeless(self, instant)))
+            .or_else(|| self.trouble(instant))
     }
 
     /// Lets the driveline decide; says whether anything changed. Who remembers nothing decides nothing.

@@ -118,7 +118,7 @@ fn simulate_one(
     };
     let outcome = scenario
         .fidelity
-        .simulate(&scenario.model(registry)?, cycle)
+        .simulate_unless(&scenario.model(registry)?, cycle, &interrupted)
         .map_err(|error| Failure::Machine(error.to_string()))?;
     if !outcome.ledger.turnover_j().is_finite() {
         return Err(Failure::Input(format!(
@@ -152,7 +152,8 @@ fn summary_of(id: &str, outcome: &Outcome) -> RunSummary {
 
 fn stopped(run: &RunSummary) -> Option<String> {
     match &run.end {
-        End::Finished => None,
+        // An interruption is told by how the program ends.
+        End::Finished | End::Interrupted { .. } => None,
         End::Stopped { time_s, position_m, reason } => Some(format!(
             "run `{}` could not be driven to its end: {reason} (at {time_s:.2} s and {position_m:.1} m); what was \
              simulated up to there is kept",
@@ -184,7 +185,11 @@ fn told(scenario: &Scenario, summary: &Summary, took_ms: f64, output: &Output) -
         let _ = writeln!(
             text,
             "  {name}{} after {:.2} s and {:.1} m, at most {:.1} km/h",
-            if run.end == End::Finished { "finished" } else { "stopped" },
+            match run.end {
+                End::Finished => "finished",
+                End::Stopped { .. } => "stopped",
+                End::Interrupted { .. } => "interrupted",
+            },
             run.duration_s,
             run.distance_m,
             3.6 * run.highest_speed_m_s

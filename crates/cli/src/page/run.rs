@@ -26,9 +26,17 @@ pub fn page(
 fn lede(vehicle: &str, runs: &[(String, Outcome)]) -> String {
     let duration: f64 = runs.iter().map(|(_, outcome)| outcome.trace.duration_s()).sum();
     let stopped = runs.iter().filter(|(_, outcome)| outcome.end != End::Finished).count();
+    let cut = |(_, outcome): &&(String, Outcome)| matches!(outcome.end, End::Interrupted { .. });
+    let interrupted = runs.iter().filter(cut).count();
     let ends = match (runs.len(), stopped) {
         (1, 0) => "It was driven to its end.".to_owned(),
         (_, 0) => "All were driven to their end.".to_owned(),
+        (1, _) if interrupted > 0 => "It was interrupted before its end.".to_owned(),
+        (_, stopped) if interrupted == stopped => format!("{stopped} were interrupted before their end."),
+        (_, stopped) if interrupted > 0 => format!(
+            "{interrupted} were interrupted before their end, {} could not be driven to theirs.",
+            stopped - interrupted
+        ),
         (_, stopped) => format!("{stopped} could not be driven to the end."),
     };
     let count = if runs.len() == 1 { "one run".to_owned() } else { format!("{} runs", runs.len()) };
@@ -87,6 +95,7 @@ fn table(runs: &[(String, Outcome)]) -> Table {
         let end = match &outcome.end {
             End::Finished => "finished".to_owned(),
             End::Stopped { reason, .. } => format!("stopped: {reason}"),
+            End::Interrupted { .. } => "interrupted".to_owned(),
         };
         vec![
             Cell::from(id.clone()),

@@ -83,6 +83,53 @@ fn rows_of_uneven_length_are_refused() {
     holds(&told, &["r1.csv:7", "expected 3"]);
 }
 
+/// What comes after a start that is no number is no number either; that is said before anything is simulated.
+#[test]
+fn a_start_that_is_no_number_is_refused_where_it_stands() {
+    let told = scenario("speed_m_s: \"36 km/h\"", "speed_m_s: NaN");
+    holds(&told, &["`speed_m_s` is NaN", "scenario.ron:15:"]);
+}
+
+#[test]
+fn text_of_another_encoding_is_refused_with_its_place() {
+    let place = Place::new();
+    std::fs::write(place.path("scenario.ron"), b"(\n    about: \"M\xfchle\",\n)").unwrap();
+    let told = refused(2, &["run", &place.path("scenario.ron")]);
+    holds(&told, &["scenario.ron", "0xFC", "line 2, column 14", "expected UTF-8"]);
+}
+
+/// Logs from Windows were told one line too early.
+#[test]
+fn the_line_of_a_cell_is_right_however_lines_end() {
+    for ends in ["\n", "\r\n"] {
+        let log = "time_s,v\n0,1\n\n1,fast\n".replace('\n', ends);
+        holds(&recording(RECORDING, &log), &["r1.csv:4:3"]);
+    }
+}
+
+#[test]
+fn a_quotation_that_is_never_closed_is_shown_by_its_first_line() {
+    let told = recording(RECORDING, &format!("time_s,v\n0,1\n1,\"2\n{}", "2,3\n".repeat(1000)));
+    holds(&told, &["`2…`", "r1.csv:3:3"]);
+    assert!(told.len() < 1000, "{told}");
+}
+
+#[test]
+fn a_recorded_drive_that_runs_backwards_is_refused_with_its_line() {
+    for (rows, pieces) in [
+        ("0,0\r\n2,1\r\n1,2\r\n", ["1 s after 2 s in line 4", "increasing times"]),
+        ("0,0\r\n2,-1\r\n", ["-1 m/s in line 3", "a speed of 0 or more"]),
+    ] {
+        let place = Place::new();
+        place.write("drive.csv", &format!("time_s,speed_m_s\r\n{rows}"));
+        let text = SCENARIO.replace("Coast(until: Elapsed(for_s: 20))", "Follow(file: \"drive.csv\")");
+        place.write("scenario.ron", &text);
+        let told = refused(2, &["run", &place.path("scenario.ron")]);
+        holds(&told, &["`drive.csv`", "scenario.ron:16:"]);
+        holds(&told, &pieces);
+    }
+}
+
 #[test]
 fn empty_files_are_refused() {
     holds(&recording(RECORDING, ""), &["r1.csv", "expected a header"]);

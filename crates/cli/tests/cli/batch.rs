@@ -182,6 +182,20 @@ fn a_run_that_fails_is_a_row_with_its_error() {
     assert!(errors.iter().any(|error| error.contains("come to rest") && error.contains(" m)")), "{errors:?}");
 }
 
+/// The page looked at the first point of a configuration, and a batch whose first point is refused ended without one.
+#[test]
+fn a_first_run_that_is_refused_spoils_nothing() {
+    let text = COMPARISON
+        .replace("[1.0, 2.0]", "[-1.0, 1.0]")
+        .replace("count: 20", "count: 1")
+        .replace("times: 4", "times: 1");
+    let place = place(&text);
+    let (code, told) = status(batch(&place, "out", &[]));
+    assert_eq!(code, Some(1), "{told}");
+    assert!(told.contains("2 of 4 runs have no end") && told.contains("`drag_area_m2` is -1"), "{told}");
+    assert!(Path::new(&place.path("out/report.html")).exists());
+}
+
 /// A file that may not grow stands for a full disk: the shell limits its size, and the signal of the limit is ignored.
 #[test]
 fn a_full_disk_is_3_and_loses_nothing_that_was_finished() {

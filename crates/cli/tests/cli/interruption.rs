@@ -23,6 +23,47 @@ fn interrupt(child: &Child) {
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
 }
 
+/// One run that would take a day of steps of 10 ms is cut, and what it came to is there to be read.
+#[test]
+fn a_single_run_that_is_interrupted_keeps_what_was_simulated() {
+    for wait_ms in [500, 1500, 4000, 10_000] {
+        let place = Place::new();
+        let text = SCENARIO
+            .replace("Coast(until: Elapsed(for_s: 20))", "Coast(until: Elapsed(for_s: 80000))")
+            .replace("step_s: 0.05", "step_s: 0.01");
+        place.write("scenario.ron", &text);
+        let child = headland()
+            .args(["run", &place.path("scenario.ron"), "--out", &place.path("out")])
+            .stderr(std::process::Stdio::piped())
+            .stdout(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_millis(wait_ms));
+        interrupt(&child);
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "interrupted after {wait_ms} ms");
+        if !Path::new(&place.path("out/summary.json")).exists() {
+            continue;
+        }
+        let summary = place.json("out/summary.json");
+        let run = &summary["runs"][0];
+        let (at_s, lasted_s) =
+            (run["end"]["Interrupted"]["time_s"].as_f64().unwrap(), run["duration_s"].as_f64());
+        assert!(at_s > 0.0 && lasted_s == Some(at_s), "{run}");
+        assert!(run["phases"][0]["ended_by"].as_str().unwrap().contains("interrupted"), "{run}");
+        assert!(Path::new(&place.path("out/trace.parquet")).exists());
+        let page = std::fs::read_to_string(place.path("out/report.html")).unwrap();
+        assert!(page.contains("It was interrupted before its end."));
+        let (told, said) = (output.stdout, String::from_utf8_lossy(&output.stderr).into_owned());
+        assert!(
+            String::from_utf8_lossy(&told).contains("interrupted after") && said.contains("interrupted"),
+            "{said}"
+        );
+        return;
+    }
+    panic!("nothing was ever simulated");
+}
+
 /// Interrupts sooner or later, as fast as the machine happens to be: too soon nothing is finished yet.
 #[test]
 fn an_interruption_keeps_what_is_finished_and_ends_with_130() {

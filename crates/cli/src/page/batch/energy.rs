@@ -98,13 +98,19 @@ impl Content<'_> {
     }
 
     fn flow(&self, cell: &Cell, registry: &Registry) -> Result<Plot, Failure> {
-        let spec = headland_batch::Spec {
+        let spec = |point| headland_batch::Spec {
             variant: cell.variant,
             cycle: cell.cycle,
             ground: cell.ground,
+            point,
             ..self.plan.spec(0)
         };
-        let (_, model) = Scenario::with_model(self.plan.document(spec)?, registry)?;
+        // A point may be refused; what was drawn of the cell came of another one.
+        let built = |point| -> Result<_, Failure> {
+            Ok(Scenario::with_model(self.plan.document(spec(point))?, registry)?)
+        };
+        let found = (0..self.plan.points()).find_map(|point| built(point).ok());
+        let (_, model) = found.map_or_else(|| built(0), Ok)?;
         let plain = |name: &str| account_of_column(&account_column(name)).unwrap_or_default();
         let losses: Vec<String> = model.driveline.losses().iter().map(|name| plain(name)).collect();
         let mut stages = Stages::default();

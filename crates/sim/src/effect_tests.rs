@@ -249,3 +249,22 @@ fn the_constant_part_of_a_road_load_goes_with_the_mass() {
     let outcome = hold(&loaded);
     assert!((last(&outcome, "tractive_force_n") - (150.0 + 20.0 + 50.0)).abs() < 1e-9);
 }
+
+/// 1200 N at 5·10⁻⁵ / N slip by 0.06: the wheels roll at v / 0.94, whatever the driveline could have given.
+#[test]
+fn wheels_slip_by_a_recorded_force_that_no_driveline_gives() {
+    let recorded = drive(&model(vec![]), 1.0, vec![Phase::Reach { speed_m_s: 2.0, acceleration_m_s2: 1.0 }]);
+    let mut slips = model(vec![does(Action { slip_per_n: 5e-5, ..Action::default() })]);
+    slips.driveline = Box::new(Idle);
+    let how = Replay {
+        drive: Drive::Force,
+        also: Vec::new(),
+        window_s: None,
+        smoothing_s: 0.05,
+        step_s: 0.01,
+        reversed_from_m: None,
+    };
+    let replayed = replay(&slips, &recorded.trace, &how).unwrap();
+    let of = |channel: &str| replayed.trace.get(channel).unwrap()[50];
+    assert!((of("wheel_speed_m_s") - of("speed_m_s") / 0.94).abs() < 1e-9, "{}", of("wheel_speed_m_s"));
+}

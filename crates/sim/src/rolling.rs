@@ -43,8 +43,10 @@ impl Model {
         };
         demand.speed_m_s = slip_of(demand.force_n);
         let mut delivery = self.driveline.deliver(&demand, &states[range.clone()], &mut rates[range.clone()]);
-        // A recorded motion was driven by what it took, whatever the driveline of the model could have given.
-        if sums.slip_per_n != 0.0 && delivery.force_n != demand.force_n && !given.driven {
+        // A recorded motion was driven by what it took, and a recorded force was there, whatever the driveline of the model
+        // could have given.
+        let recorded = given.driven || matches!(command, Command::Recorded(_));
+        if sums.slip_per_n != 0.0 && delivery.force_n != demand.force_n && !recorded {
             demand.speed_m_s = slip_of(delivery.force_n);
             delivery = self.driveline.deliver(&demand, &states[range.clone()], &mut rates[range]);
         }

@@ -3,6 +3,7 @@
 use crate::gram::Column;
 use crate::noise::{Noise, Noises, Shape};
 use crate::recorded::{Recorded, SLOWEST_M_S};
+use crate::renewal::renewed_s;
 use crate::rows::{Chunk, Row, chunks};
 use crate::said::Said;
 use crate::tails::Tails;
@@ -97,6 +98,20 @@ impl Kind {
             Self::Battery | Self::Charge => "battery_power_w",
             Self::Voltage => "battery_voltage_v",
             Self::Fuel => "fuel_rate_kg_s",
+        }
+    }
+
+    /// Channels whose renewals its rows wait for.
+    fn channels(self) -> &'static [&'static str] {
+        match self {
+            Self::Parity => &["speed_m_s", "specific_force_m_s2"],
+            Self::Slip => &["speed_m_s", "wheel_speed_m_s"],
+            Self::Motion => &["speed_m_s"],
+            Self::Shaft => &["engine_torque_n_m"],
+            Self::Battery => &["battery_power_w"],
+            Self::Charge => &["state_of_charge"],
+            Self::Voltage => &["battery_voltage_v"],
+            Self::Fuel => &["fuel_rate_kg_s"],
         }
     }
 
@@ -304,7 +319,7 @@ pub fn block_s(kind: Kind, runs: &[Recorded], rows: Rows) -> f64 {
     let mut durations: Vec<f64> = runs.iter().map(|run| run.measured.trace.duration_s()).collect();
     durations.sort_by(f64::total_cmp);
     let median = durations.get(durations.len() / 2).copied().unwrap_or(1.0);
-    let period = longest_period_s(runs);
+    let period = kind.channels().iter().map(|name| longest_renewal_s(runs, name)).fold(0.0, f64::max);
     let whole: f64 = durations.iter().sum();
     let most = match (rows, kind) {
         (_, Kind::Parity | Kind::Slip | Kind::Motion) => MOST_ROWS_OF_MOTION,
@@ -314,9 +329,9 @@ pub fn block_s(kind: Kind, runs: &[Recorded], rows: Rows) -> f64 {
     (median / ROWS_PER_RUN).max(0.04).min(1.0_f64.max(2.0 * period)).max(2.0 * period).max(whole / most)
 }
 
-/// Sampling period of the slowest run [s].
-pub fn longest_period_s(runs: &[Recorded]) -> f64 {
-    runs.iter().map(|run| run.measured.trace.period_s()).fold(0.0, f64::max)
+/// Time from one renewal of a channel to the next in the slowest run [s].
+pub fn longest_renewal_s(runs: &[Recorded], name: &str) -> f64 {
+    runs.iter().map(|run| renewed_s(&run.measured.trace, name)).fold(0.0, f64::max)
 }
 
 fn usable(kind: Kind, run: &Recorded, said: &Said) -> Vec<bool> {
@@ -382,7 +397,7 @@ fn residual(kind: Kind, run: &Recorded, said: &Said, chunk: &Chunk) -> DVector<f
     let one = |row: &Row| match kind {
         Kind::Voltage => row.mean(&said.voltage_left_v),
         Kind::Motion => {
-            let force = run.force_n.as_deref().unwrap_or(&zero);
+            let force = said.force_n.as_deref().or(run.force_n.as_deref()).unwrap_or(&zero);
             let slope = row.slope(time_s, channel("speed_m_s"));
             row.mean(force) - row.mean(&said.resistance_n) - row.mean(&said.effective_mass_kg) * slope
         }
@@ -421,7 +436,8 @@ pub fn change(kind: Kind, run: &Recorded, before: &Said, after: &Said) -> Vec<f6
     match kind {
         Kind::Motion => (0..count)
             .map(|i| {
-                before.resistance_n[i] - after.resistance_n[i]
+                let force = |said: &Said| said.force_n.as_ref().map_or(0.0, |force| force[i]);
+                force(after) - force(before) + before.resistance_n[i] - after.resistance_n[i]
                     + (before.effective_mass_kg[i] - after.effective_mass_kg[i]) * run.acceleration_m_s2[i]
             })
             .collect(),

@@ -93,10 +93,13 @@ fn excess_n(run: &Recorded, said: &Said, sound: &[bool]) -> Option<Vec<f64>> {
     Some(averaged(trace.time_s(), &raw))
 }
 
-/// Mean over [`WINDOW_S`] around each sample that is known.
+/// Mean over [`WINDOW_S`] around each sample that is known, where the window is as full as windows are: at an end, what
+/// is left of it is noisier than the rest.
 fn averaged(time_s: &[f64], values: &[f64]) -> Vec<f64> {
+    /// Share of the samples that a window usually holds.
+    const FULL: f64 = 0.7;
     let (mut from, mut to) = (0, 0);
-    (0..values.len())
+    let means: Vec<(f64, usize)> = (0..values.len())
         .map(|index| {
             while time_s[from] < time_s[index] - 0.5 * WINDOW_S {
                 from += 1;
@@ -106,9 +109,11 @@ fn averaged(time_s: &[f64], values: &[f64]) -> Vec<f64> {
             }
             let known = values[from..to].iter().filter(|value| value.is_finite());
             let (sum, count) = known.fold((0.0, 0usize), |(sum, count), value| (sum + value, count + 1));
-            if values[index].is_finite() { sum / count.max(1) as f64 } else { f64::NAN }
+            (if values[index].is_finite() { sum / count.max(1) as f64 } else { f64::NAN }, count)
         })
-        .collect()
+        .collect();
+    let most = FULL * means.iter().map(|(_, count)| *count).max().unwrap_or(0) as f64;
+    means.into_iter().map(|(mean, count)| if count as f64 >= most { mean } else { f64::NAN }).collect()
 }
 
 /// First and last sample of every stretch that is braked.

@@ -9,10 +9,11 @@ use crate::said::{Said, said};
 use crate::search::Accepted;
 use crate::sensors::corrected;
 use crate::so_far::SoFar;
+use crate::split::{split, traits};
 use crate::standin::prepared;
 use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
 use headland_calibrate::study::Study;
-use headland_plugin::{Registry, closest};
+use headland_plugin::{Contact, Registry, closest};
 use headland_recording::Recording;
 use headland_scenario::Scenario;
 use std::sync::Arc;
@@ -122,7 +123,7 @@ impl<'a> Case<'a> {
         case.suppose()?;
         case.kinds = kinds(&case.runs, &case.nominal);
         case.bears = bearing(&case.kinds, &case.runs, &case.nominal);
-        (case.fit, case.chosen) = split(&marked, &case.bears);
+        (case.fit, case.chosen) = split(&marked, &case.bears, &traits(&case.runs));
         if !case.kinds.is_empty() {
             case.study.notes.extend(idle(&case));
         }
@@ -275,6 +276,7 @@ impl<'a> Case<'a> {
             rotating_mass_kg: model.vehicle.rotating_mass_kg,
             masses_kg: range(masses.copied()),
             coefficient: if resistances.is_empty() { 0.0 } else { median(&resistances).max(0.0) },
+            soil_coefficient: walking(model),
             speeds_m_s: [0.2, 0.35, 0.5, 0.65, 0.8].map(quantile),
             duration_s: self.runs.iter().map(|run| run.measured.trace.duration_s()).fold(0.0, f64::max),
             channels: names
@@ -302,6 +304,19 @@ impl<'a> Case<'a> {
     }
 }
 
+/// Resistance of the nominal ground over weight at walking speed.
+fn walking(model: &headland_sim::Model) -> f64 {
+    let weight_n = model.vehicle.mass_kg * model.gravity_m_s2;
+    let resistance_n = match model.vehicle.resistance {
+        headland_sim::Resistance::RoadLoad { f0_n, .. } => f0_n,
+        headland_sim::Resistance::Drag { .. } => model.soil.as_ref().map_or(0.0, |soil| {
+            let contact = Contact { load_n: weight_n, speed_m_s: 1.0, position_m: 0.0 };
+            soil.resistance_at_n(&contact, &model.terrain.at(0.0))
+        }),
+    };
+    if resistance_n.is_finite() { resistance_n.max(0.0) / weight_n } else { 0.0 }
+}
+
 /// Least and greatest of the finite values; infinite and reversed where there are none.
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let finite = values.filter(|value| value.is_finite());
@@ -322,26 +337,6 @@ fn bound(causes: &mut [Cause], registry: &Registry) {
             }
         }
     }
-}
-
-/// Which runs are fitted: all that are not marked, or two of three of those that bear on anything where none of these is.
-fn split(marked: &[bool], bears: &[bool]) -> (Vec<bool>, bool) {
-    /// Fewer runs are all needed.
-    const FEWEST: usize = 3;
-    // Where no run bears on anything, there is another error.
-    let none = !bears.contains(&true);
-    let bears = |run: usize| none || bears[run];
-    if (0..marked.len()).any(|run| marked[run] && bears(run)) {
-        return ((0..marked.len()).map(|run| !marked[run] && bears(run)).collect(), false);
-    }
-    let bearing: Vec<usize> = (0..marked.len()).filter(|run| bears(*run)).collect();
-    // Of ten runs the third, the seventh and the tenth: both directions, early and late.
-    let held = |index: usize| index % 10 == 2 || index % 10 == 6 || index % 10 == 9;
-    let mut fit = vec![false; marked.len()];
-    for (index, run) in bearing.iter().enumerate() {
-        fit[*run] = bearing.len() < FEWEST || !held(index);
-    }
-    (fit, true)
 }
 
 /// The fitted runs that may have begun otherwise than the others: a few in which it would show, so that not too many are tried.

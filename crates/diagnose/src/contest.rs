@@ -26,6 +26,8 @@ impl Contest {
     }
 }
 
+/// A function that is correlated for so long stays the same throughout a run [s].
+const BY_RUN_S: f64 = 1e7;
 /// The cause that is switched.
 const SWITCHED: &str = "auxiliary_power";
 /// Trials whose noise is estimated anew.
@@ -208,6 +210,7 @@ impl State<'_> {
             Some(reduced.estimate(&places, &sd)?.log_evidence)
         };
         let lengths: &[f64] = match cause.form {
+            _ if cause.by_run => &[BY_RUN_S],
             Form::OverPosition => &[5.0, 15.0, 50.0, 150.0, 450.0],
             // A tank fills and empties; what comes and goes faster is a force.
             _ if cause.id == "payload_change" => &[20.0, 80.0, 320.0],
@@ -221,7 +224,8 @@ impl State<'_> {
         let longest = profile.longest();
         // Nor does it change its mind all the time: a load that comes and goes within a small part of the way is none.
         let least = if cause.id == "payload_change" { longest / MOST_LOADS } else { 0.0 };
-        let possible = lengths.iter().copied().filter(|length| (least..longest).contains(length));
+        let able = |length: &f64| cause.by_run || (least..longest).contains(length);
+        let possible = lengths.iter().copied().filter(able);
         let (gain, spread) = best_of(
             possible.map(|length| Spread { length, size: usual, knots_per_length, jumps: None }).collect(),
         )?;

@@ -22,6 +22,10 @@ pub struct Fault {
 /// A value is stuck that stays the same for so long [s] and so many samples.
 const STUCK_S: f64 = 1.0;
 const STUCK_SAMPLES: usize = 15;
+/// Where it leaps to the next value, by so many times all but a few of its steps, it was stuck for a shorter time as well.
+const LEAP: f64 = 5.0;
+const STUCK_BEFORE_A_LEAP_S: f64 = 0.5;
+const STUCK_SAMPLES_BEFORE_A_LEAP: usize = 6;
 /// And so many times as long as the channel usually holds a value: sensors are slower than the log, and coarse.
 const HELD: f64 = 8.0;
 /// What is usual: all but this share of the samples.
@@ -60,6 +64,7 @@ pub fn faults(drives: &[Recorded]) -> (Vec<Fault>, Vec<Vec<bool>>) {
             all.push(fault);
         }
         all.extend(missing(drives, name));
+        all.extend(nought(drives, name, &mut usable));
     }
     all.extend(lost(drives));
     (all, usable)
@@ -114,6 +119,15 @@ fn usual_length(equal: &[(usize, usize)], samples: usize) -> f64 {
     1.0
 }
 
+/// All but [`UNUSUAL`] of the steps of a channel are smaller.
+fn usual_step(values: &[f64]) -> f64 {
+    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let mut steps: Vec<f64> = steps.filter(|step| step.is_finite() && *step > 0.0).collect();
+    steps.sort_by(f64::total_cmp);
+    let place = headland_calibrate::statistics::quantile_of_sorted;
+    if steps.is_empty() { f64::INFINITY } else { place(&steps, 1.0 - UNUSUAL) }
+}
+
 fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fault> {
     let mut stretches = Vec::new();
     let mut runs = 0;
@@ -124,16 +138,23 @@ fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fa
         let time_s = trace.time_s();
         let equal = still(values);
         let enough = HELD * usual_length(&equal, values.len());
+        let leap = LEAP * usual_step(values);
         let long: Vec<(usize, usize)> = equal
             .iter()
             .copied()
             .filter(|(from, to)| {
                 let moving = (*from..=*to).all(|index| drive.motion.value[index] > SLOWEST_M_S);
+                let leaps = values.get(to + 1).is_some_and(|next| (next - values[*to]).abs() > leap);
+                let (samples, long_s) = if leaps {
+                    (STUCK_SAMPLES_BEFORE_A_LEAP, STUCK_BEFORE_A_LEAP_S)
+                } else {
+                    (STUCK_SAMPLES, STUCK_S)
+                };
                 moving
                     && values[*from] != 0.0
-                    && to - from >= STUCK_SAMPLES
+                    && to - from >= samples
                     && (to - from) as f64 >= enough
-                    && time_s[*to] - time_s[*from] >= STUCK_S
+                    && time_s[*to] - time_s[*from] >= long_s
             })
             .collect();
         if long.is_empty() {
@@ -227,6 +248,53 @@ fn missing(drives: &[Recorded], name: &str) -> Option<Fault> {
     }
     // A channel that is missing for most of the time was not logged there, or not asked.
     (lost as f64 > LOST * count as f64 && 2 * lost < count).then(|| Fault {
+        id: "dropout",
+        channel: name.to_owned(),
+        size: lost as f64 / count as f64,
+        unit: "1".to_owned(),
+        stretches,
+    })
+}
+
+/// Values of a channel that leap to nought now and then and back to where they were: what is lost is written as nought by
+/// some loggers.
+fn nought(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fault> {
+    /// No driver lets go for so short a time and comes back to the same force [s].
+    const LONGEST_S: f64 = 3.0;
+    /// Back to where it was: within this share of it.
+    const SAME: f64 = 0.5;
+    /// Once may be chance.
+    const FEWEST: usize = 2;
+    let mut stretches = Vec::new();
+    let (mut lost, mut count) = (0usize, 0usize);
+    let mut samples: Vec<(usize, usize, usize)> = Vec::new();
+    for (run, drive) in drives.iter().enumerate() {
+        let Some(values) = own(drive, name) else { continue };
+        count += values.len();
+        let time_s = drive.measured.trace.time_s();
+        let leap = LEAP * usual_step(values);
+        for (from, to) in still(values) {
+            let (Some(before), Some(after)) = (from.checked_sub(1).map(|at| values[at]), values.get(to + 1))
+            else {
+                continue;
+            };
+            let moving = (from..=to).all(|index| drive.motion.value[index] > SLOWEST_M_S);
+            let back = (after - before).abs() < SAME * before.abs().max(after.abs());
+            let leaps = before.abs().min(after.abs()) > leap;
+            if values[from] == 0.0 && moving && back && leaps && time_s[to] - time_s[from] < LONGEST_S {
+                samples.push((run, from, to));
+                stretches.push(place(drive, from, to));
+                lost += to - from + 1;
+            }
+        }
+    }
+    if samples.len() < FEWEST {
+        return None;
+    }
+    for (run, from, to) in samples {
+        usable[run][from..=to].fill(false);
+    }
+    Some(Fault {
         id: "dropout",
         channel: name.to_owned(),
         size: lost as f64 / count as f64,

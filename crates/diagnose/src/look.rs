@@ -1,9 +1,9 @@
 //! A look at the runs: their rows, the regressors and what they tell; and looks after it, from what was found before.
 
-use crate::balance::{Rows, System};
+use crate::balance::{Kind, Rows, System};
 use crate::case::Correction;
 use crate::contest::Contest;
-use crate::search::{Found, LEAST_GAIN, MOST_CAUSES, PER_CAUSE, search, worth};
+use crate::search::{Accepted, Found, LEAST_GAIN, MOST_CAUSES, PER_CAUSE, search, worth};
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Trial, add_trial, pool};
 use crate::{Case, DiagnoseError, bend, sensors, sharpen, straying};
@@ -87,6 +87,10 @@ impl Look {
                 more = true;
             }
         }
+        if let Some(late) = self.late(case) {
+            corrections.push(late);
+            more = true;
+        }
         let small: Vec<&'static str> = corrections
             .iter()
             .filter(|correction| sensors::petty(case, correction.id, correction.value))
@@ -99,6 +103,42 @@ impl Look {
         case.petty.extend(small);
         case.correct(corrections)?;
         Ok(true)
+    }
+
+    /// A latency that every sensor may have a little of, where it is more than that: nothing else delays a force, and what is
+    /// free throughout is found by no search.
+    fn late(&self, case: &Case) -> Option<Correction> {
+        /// No filter of a sensor takes longer [s].
+        const LONGEST_FILTER_S: f64 = 0.08;
+        /// So many standard deviations beyond it.
+        const CLEARLY: f64 = 1.7;
+        const ID: &str = "latency";
+        let known = |id: &str| id == ID;
+        if !case.wanted(ID) || case.corrections.iter().any(|one| known(one.id)) || case.petty.contains(&ID) {
+            return None;
+        }
+        let column = self.pool.small.iter().find(|(id, _)| known(id))?.1;
+        let trial = self.pool.trials.iter().find(|trial| known(case.causes[trial.cause].id))?;
+        if self.found.accepted.iter().any(|one| known(case.causes[one.trial.cause].id)) {
+            return None;
+        }
+        let position = self.found.used.iter().position(|used| *used == column)?;
+        let value = self.found.estimate.beta[position];
+        let sd = self.found.estimate.covariance[(position, position)].sqrt();
+        let most = sensors::small_latency_s(case).max(LONGEST_FILTER_S);
+        if value.abs() < most + CLEARLY * sd {
+            return None;
+        }
+        let accepted = Accepted {
+            trial: trial.clone(),
+            gain: 0.5 * (value / sd).powi(2),
+            by_chance: self.found.needed,
+            rivals: Vec::new(),
+            function: None,
+            along: None,
+            balance: self.system.kinds.iter().position(|kind| *kind == Kind::Motion)?,
+        };
+        Some(Correction { id: ID, value, accepted })
     }
 
     /// Searches once more with shapes between the points of the grids, and with causes as they are at their size.

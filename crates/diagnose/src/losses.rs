@@ -6,15 +6,17 @@
 //! square of the torque, iron and windage losses with speed.
 
 use crate::Case;
-use crate::balance::{FUEL_J_KG, Kind, System, longest_period_s};
+use crate::balance::{FUEL_J_KG, Kind, System, longest_renewal_s};
 use crate::gram::Column;
 use crate::recorded::Recorded;
 use crate::said::Said;
 use crate::sensors::Small;
 use headland_sim::local_fit;
 
+/// The loss that goes with the square of speed.
+pub const SPEED_SQUARED: &str = "battery_speed_squared";
 /// A loss that nobody would call wrong, as a share of the drive's power, both as root mean squares.
-const SMALL: f64 = 0.05;
+const SMALL: f64 = 0.025;
 
 /// The small losses, where there is a battery balance and a force is known.
 pub fn small_losses(case: &Case, system: &System) -> Vec<Small> {
@@ -40,9 +42,9 @@ pub fn small_losses(case: &Case, system: &System) -> Vec<Small> {
         local_fit(time_s, &known, run.measured.how.smoothing_s).slope
     };
     let smalls = vec![
-        of("battery_lag", &late, Some(longest_period_s(&case.runs))),
+        of("battery_lag", &late, Some(longest_renewal_s(&case.runs, "battery_power_w"))),
         of("battery_force_squared", &|run| products(run, |force, _| force * force), None),
-        of("battery_speed_squared", &|run| products(run, |_, speed| speed * speed), None),
+        of(SPEED_SQUARED, &|run| products(run, |_, speed| speed * speed), None),
         of("battery_power_size", &|run| products(run, |force, speed| (force * speed).abs()), None),
     ];
     smalls.into_iter().filter(|small| small.sd.is_finite() && small.sd > 0.0).collect()

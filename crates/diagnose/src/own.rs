@@ -175,6 +175,7 @@ fn cause(id: &'static str, words: &'static str, term: Term, own: Own) -> Cause {
         experiment: EXPERIMENT,
         law: None,
         own: Some(own),
+        by_run: false,
         run: None,
     }
 }

@@ -153,6 +153,9 @@ pub fn text(case: &Case, cured: &Cured, run: usize) -> Option<String> {
     let Some(function) = cured.function() else {
         return Some(for_run(&cured.cause.written(&cured.values()), &cured.cause, drive));
     };
+    if cured.cause.by_run {
+        return Some(cured.cause.constant(function.values[run].0.mean()));
+    }
     let over_position = cured.cause.form == Form::OverPosition;
     let group = if over_position { drive.path } else { run };
     let knots = function.knots(group);

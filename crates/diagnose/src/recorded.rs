@@ -178,8 +178,8 @@ impl Recorded {
     }
 }
 
-/// The force at the wheels that a recording knows.
-fn force(trace: &Trace, model: &Model, speed: &[f64]) -> Option<Vec<f64>> {
+/// The force at the wheels that a recording knows, with a model whose driveline makes it of a torque.
+pub fn force(trace: &Trace, model: &Model, speed: &[f64]) -> Option<Vec<f64>> {
     let torque = trace.get("motor_torque_n_m").or_else(|| trace.get("engine_torque_n_m"));
     let mut force = match (trace.get("tractive_force_n"), torque) {
         (Some(force), _) => Some(force.to_vec()),

@@ -191,7 +191,12 @@ fn linear(case: &Case, pool: &Pool, found: &Found, widths: &[Widths]) -> Refined
         };
         // Its column is none of a trial, so its number is its place among those in use.
         let value = correction.value + found.estimate.beta[*column];
-        let values = vec![(value, interval(*column, value))];
+        let ci95 = interval(*column, value);
+        // What may be none is no fault.
+        if ci95[0] <= 0.0 && ci95[1] >= 0.0 {
+            continue;
+        }
+        let values = vec![(value, ci95)];
         let accepted = correction.accepted.clone();
         let cause = case.causes[accepted.trial.cause].clone();
         causes.push(Cured { cause, accepted, values, events: Vec::new() });

@@ -29,6 +29,9 @@ pub struct Chunk {
     pub rows: Vec<Row>,
 }
 
+/// Number of a block, its first sample and the one behind its last.
+type Block = (f64, usize, usize);
+
 /// Longer chunks cost more than they tell: what a function is made of is dense within a chunk.
 const LONGEST_CHUNK: usize = 150;
 /// A shorter chunk tells less about the noise than its ends disturb.
@@ -49,7 +52,7 @@ pub fn chunks(balance: usize, run: usize, time_s: &[f64], usable: &[bool], block
         }
     };
     let block_of = |sample: usize| ((time_s[sample] - start) / block_s + 1e-9).floor();
-    let mut blocks: Vec<(f64, usize, usize)> = Vec::new();
+    let mut blocks: Vec<Block> = Vec::new();
     for sample in 0..time_s.len() {
         let block = block_of(sample);
         match blocks.last_mut() {
@@ -57,6 +60,7 @@ pub fn chunks(balance: usize, run: usize, time_s: &[f64], usable: &[bool], block
             _ => blocks.push((block, sample, sample + 1)),
         }
     }
+    let blocks = without_pieces(&blocks);
     for pair in blocks.windows(2) {
         let ((one, from, middle), (two, _, to)) = (pair[0], pair[1]);
         let whole = (from..to).all(|sample| usable[sample]);
@@ -77,6 +81,23 @@ pub fn chunks(balance: usize, run: usize, time_s: &[f64], usable: &[bool], block
     }
     close(&mut open);
     chunks
+}
+
+/// Blocks without those beside a gap or at an end that hold few samples: their means are noisier than the others', and no
+/// row knows it.
+fn without_pieces(blocks: &[Block]) -> Vec<Block> {
+    /// Fewer samples than this share of what a block usually holds are a piece.
+    const WHOLE: f64 = 0.6;
+    let mut counts: Vec<usize> = blocks.iter().map(|(_, from, to)| to - from).collect();
+    counts.sort_unstable();
+    let usual = counts.get(counts.len() / 2).copied().unwrap_or(0) as f64;
+    let apart = |one: usize, two: usize| blocks[two].0 - blocks[one].0 > 1.5;
+    let last = blocks.len().saturating_sub(1);
+    let at_end =
+        |place: usize| place == last || apart(place, place + 1) || place > 0 && apart(place - 1, place);
+    let whole =
+        |place: &usize| !at_end(*place) || (blocks[*place].2 - blocks[*place].1) as f64 >= WHOLE * usual;
+    (0..blocks.len()).filter(whole).map(|place| blocks[place]).collect()
 }
 
 impl Row {
@@ -109,6 +130,15 @@ mod tests {
             let middle = row.slope(&time_s, &speed);
             assert!((middle - row.mean(&force)).abs() < 1e-9, "{middle} against {}", row.mean(&force));
         }
+    }
+
+    #[test]
+    fn a_piece_of_a_block_at_the_end_makes_no_row() {
+        let time_s: Vec<f64> = (0..101).map(|index| 0.1 * f64::from(index)).collect();
+        let with = |samples: usize| chunks(0, 0, &time_s[..samples], &vec![true; samples], 0.5);
+        let last = |samples: usize| with(samples)[0].rows.last().unwrap().samples[2];
+        assert_eq!([last(100), last(101)], [100, 100]);
+        assert_eq!([last(99), last(97)], [99, 95]);
     }
 
     #[test]

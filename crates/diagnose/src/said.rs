@@ -2,7 +2,7 @@
 
 use crate::DiagnoseError;
 use crate::balance::Kind;
-use crate::recorded::Recorded;
+use crate::recorded::{Recorded, force};
 use crate::voltage::{residual_v, resistance_ohm};
 use headland_sim::{Drive, Inputs, Model, Replay, replay};
 use headland_trace::{Origin, Trace};
@@ -17,6 +17,9 @@ pub struct Said {
     pub effective_mass_kg: Vec<f64>,
     /// Slope's part of the specific force [m/s²].
     pub slope_m_s2: Vec<f64>,
+    /// Force at the wheels that this model's driveline makes of a recorded torque [N]; none where the force itself was
+    /// recorded.
+    pub force_n: Option<Vec<f64>>,
     /// Speed of the wheels' circumference [m/s].
     pub wheel_speed_m_s: Vec<f64>,
     /// Power from the battery [W].
@@ -96,7 +99,12 @@ fn say(model: &Model, run: &Recorded, kinds: &[Kind]) -> Result<Said, DiagnoseEr
         }
         None => None,
     };
+    let force_n = match trace.get("tractive_force_n") {
+        Some(_) => None,
+        None => force(trace, model, &run.motion.value),
+    };
     Ok(Said {
+        force_n,
         charge: powered.get("state_of_charge").map(<[f64]>::to_vec),
         engine_w,
         voltage_left_v: resistance_ohm.map_or_else(Vec::new, |ohm| residual_v(run, ohm)),

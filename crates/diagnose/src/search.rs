@@ -97,8 +97,8 @@ pub const LEAST_GAIN: f64 = 7.0;
 const DRAWS: u64 = 300;
 /// An effect has to be at least this share of a row's noise, as root mean square.
 const LEAST_EFFECT: f64 = 0.15;
-/// A cause has to be at least this share of what was to be explained, as mean square.
-const LEAST_SHARE: f64 = 0.03;
+/// A cause has to be at least this share of what was to be explained in one of its balances, as mean square.
+const LEAST_SHARE: f64 = 0.01;
 /// A squared correlation below which a cause does not stand for another one.
 const UNLIKE: f64 = 0.02;
 /// Two causes that leave less than this share of the smaller one when they are added cancel each other: neither is there.
@@ -145,6 +145,12 @@ pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]
         }
         open = grown;
     }
+    for stand in state.together(&first, banned) {
+        if worth(&stand) > worth(&best) + LEAST_GAIN {
+            best = stand.clone();
+        }
+        others.push(stand);
+    }
     let mut found = state.conclude(best, first, tried, needed)?;
     state.sets_as_good(&mut found, &others);
     Some(found)
@@ -186,8 +192,19 @@ impl State<'_> {
     /// What a set comes down to, cause by cause.
     pub fn conclude(&self, best: Stand, first: Stand, tried: Vec<Round>, needed: f64) -> Option<Found> {
         let best = self.without_needless(best, needed)?;
-        let (best, unproven) = self.without_unproven(best)?;
+        let (best, mut unproven) = self.without_unproven(best)?;
+        let best = self.without_impossible(best, &mut unproven)?;
         Some(self.found(best, first, (tried, unproven), needed))
+    }
+
+    /// The set without causes that had to be what they cannot be once others were gone; those are told as `unproven`.
+    fn without_impossible(&self, mut best: Stand, unproven: &mut Vec<usize>) -> Option<Stand> {
+        while let Some(place) = self.first_beyond(&best.parts, &best.estimate.beta) {
+            let mut parts = best.parts.clone();
+            unproven.push(parts.remove(place).trial.cause);
+            best = self.settle(&parts, &best.noises)?;
+        }
+        Some(best)
     }
 
     /// The set without causes that bring less beside the others than chance would.
@@ -271,13 +288,6 @@ impl State<'_> {
             out.push(parts.remove(worst).trial.cause);
             best = self.settle(&parts, &best.noises)?;
         }
-    }
-
-    /// Whether any two fitted runs drove the same path.
-    fn paths_shared(&self) -> bool {
-        let fitted = || (0..self.fit.len()).filter(|run| self.fit[*run]);
-        let path = |run: usize| self.case.runs[run].path;
-        fitted().any(|run| fitted().any(|other| other < run && path(other) == path(run)))
     }
 
     /// What was found, each cause with what it brings beside the others and what could stand in its place.
@@ -422,14 +432,19 @@ impl State<'_> {
                 .collect()
         };
         let sizes: Vec<Vec<f64>> = effects.iter().map(in_noise).collect();
-        let all: f64 = sizes.iter().flatten().sum();
+        // What is much in one balance makes nothing small that works in another.
+        let whole: Vec<f64> = (0..stand.noises.each.len())
+            .map(|balance| sizes.iter().map(|size| size[balance]).sum())
+            .collect();
         let heard = |size: &Vec<f64>| {
-            let loud = size.iter().zip(&stand.noises.each).any(|(square, noise)| match noise.shape {
-                // Differences of speed are noisy row by row and not over a run, so their rows are no measure.
-                Shape::Differenced => *square > 0.0,
-                Shape::Averaged => square.sqrt() > LEAST_EFFECT,
-            });
-            loud && size.iter().sum::<f64>() > LEAST_SHARE * all
+            size.iter().zip(&whole).zip(&stand.noises.each).any(|((square, whole), noise)| {
+                let loud = match noise.shape {
+                    // Differences of speed are noisy row by row and not over a run, so their rows are no measure.
+                    Shape::Differenced => *square > 0.0,
+                    Shape::Averaged => square.sqrt() > LEAST_EFFECT,
+                };
+                loud && *square > LEAST_SHARE * whole
+            })
         };
         let cancels = |one: usize, other: usize| {
             let sum: Column =

@@ -1,6 +1,6 @@
 //! What a sensor's fault does to the rows, and recordings as they would be without it.
 
-use crate::balance::{Kind, change, longest_period_s};
+use crate::balance::{Kind, change, longest_renewal_s};
 use crate::gram::Column;
 use crate::recorded::Recorded;
 use crate::said::Said;
@@ -27,10 +27,10 @@ pub struct Small {
 }
 
 /// A latency that every speed sensor has: a sampling period, or that of its filter [s].
-fn small_latency_s(case: &Case) -> f64 {
+pub fn small_latency_s(case: &Case) -> f64 {
     /// GNSS speed sensors are 15 to 20 ms late by their data sheets, more with a filter.
     const FILTER_S: f64 = 0.03;
-    longest_period_s(&case.runs).max(FILTER_S)
+    longest_renewal_s(&case.runs, "speed_m_s").max(FILTER_S)
 }
 
 /// Whether a fault of this size is one that nobody would mind.

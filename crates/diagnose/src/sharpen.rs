@@ -65,12 +65,30 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
             }
             let best = best(case, system, pool, found, how, (cause, &shape))?;
             if best != shape {
-                add_trial(case, system, pool, cause, &best)?;
+                // What fades by a time constant of its own is no better for having found it first.
+                for alike in alike(case, cause) {
+                    add_trial(case, system, pool, alike, &best)?;
+                }
                 added = true;
             }
         }
     }
     Ok(added)
+}
+
+/// A cause, and others whose shapes have the same names: each is tried at the best shape of the other.
+fn alike(case: &Case, cause: usize) -> Vec<usize> {
+    let names = |cause: usize| -> Vec<&str> {
+        let terms = case.causes[cause].terms.iter();
+        terms.filter(|term| !term.linear && term.low < term.high).map(|term| term.name).collect()
+    };
+    let class = case.causes[cause].class;
+    (0..case.causes.len())
+        .filter(|other| {
+            let same = case.causes[*other].class == class && case.causes[*other].form == Form::Parameters;
+            *other == cause || same && names(*other) == names(cause) && names(cause) == ["time_constant_s"]
+        })
+        .collect()
 }
 
 /// The shape that makes the recordings most likely, by moving one parameter at a time.

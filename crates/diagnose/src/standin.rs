@@ -4,6 +4,7 @@
 //! alone; what compares the two is left out there. A run that knows neither is left out.
 
 use crate::DiagnoseError;
+use crate::sparse::{self, Sparse, filled};
 use headland_calibrate::study::StudyError;
 use headland_recording::{RecordedRun, Recording};
 use headland_trace::{Origin, Trace};
@@ -34,7 +35,11 @@ pub fn prepared(recording: &Recording) -> Result<Prepared, DiagnoseError> {
     let mut own = Prepared { recording: recording.clone(), stands_in: Vec::new(), notes: Vec::new() };
     let (mut whole, mut partly, mut out): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
     own.recording.runs.clear();
+    let mut sparse: Vec<Sparse> = Vec::new();
     for run in &recording.runs {
+        let (trace, channels) = filled(&run.trace)?;
+        sparse.extend(channels);
+        let run = &RecordedRun { trace, ..run.clone() };
         let Some(stands_in) = standing_in(&run.trace) else {
             out.push(run.id.clone());
             continue;
@@ -55,6 +60,7 @@ pub fn prepared(recording: &Recording) -> Result<Prepared, DiagnoseError> {
             None => StudyError::AllHeldOut.into(),
         });
     }
+    own.notes.extend(sparse::told(&sparse));
     own.notes
         .extend(told(&whole, "no speed over ground was recorded; the speed of the wheels stands in for it"));
     own.notes.extend(told(

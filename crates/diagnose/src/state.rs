@@ -123,18 +123,23 @@ impl<'a> State<'a> {
     }
 
     fn beyond(&self, parts: &[Part], beta: &DVector<f64>) -> bool {
+        self.first_beyond(parts, beta).is_some()
+    }
+
+    /// The first part of a set that would have to be what it cannot be.
+    pub fn first_beyond(&self, parts: &[Part], beta: &DVector<f64>) -> Option<usize> {
         let mut position = self.pool.nuisance;
-        for part in parts {
+        for (place, part) in parts.iter().enumerate() {
             let cause = self.cause(&part.trial);
             for term in &part.trial.terms {
                 let bounded = part.spread.is_none();
                 if bounded && cause.impossible(*term, beta[position]) {
-                    return true;
+                    return Some(place);
                 }
                 position += 1;
             }
         }
-        false
+        None
     }
 
     /// Whether the functions of a set stay within what their parameters can be, by two standard deviations and a tenth of
@@ -167,11 +172,20 @@ impl<'a> State<'a> {
 
     /// Cost of the choice of these causes, and of what no other run shows.
     pub fn choices(&self, parts: &[Part]) -> f64 {
-        /// A function of time is shown by no other run: it takes so much more.
+        /// A function of time is shown by no other run, nor is one of a path that only one drove: it takes so much more.
         const NO_OTHER_RUN: f64 = 20.0;
-        let cost =
-            |part: &Part| choice(self.cause(&part.trial)) + if self.timed(part) { NO_OTHER_RUN } else { 0.0 };
+        let cost = |part: &Part| {
+            let alone = self.timed(part) || part.spread.is_some() && !self.paths_shared();
+            choice(self.cause(&part.trial)) + if alone { NO_OTHER_RUN } else { 0.0 }
+        };
         parts.iter().map(cost).sum()
+    }
+
+    /// Whether any two fitted runs drove the same path.
+    pub fn paths_shared(&self) -> bool {
+        let fitted = || (0..self.fit.len()).filter(|run| self.fit[*run]);
+        let path = |run: usize| self.case.runs[run].path;
+        fitted().any(|run| fitted().any(|other| other < run && path(other) == path(run)))
     }
 
     /// All columns and the residual, multiplied at a noise, with the functions of a set eliminated.

@@ -4,7 +4,9 @@
 
 use crate::balance::Kind;
 use crate::catalogue::{Cause, Class, Form, LawText};
+use crate::gram::Column;
 use crate::look::MANY_ROWS;
+use crate::losses::SPEED_SQUARED;
 use crate::noise::{Noises, Whiteners};
 use crate::search::{Found, MOST_CAUSES, TOLERANCE, concluded, worth};
 use crate::state::{Part, Stand, State};
@@ -95,6 +97,11 @@ fn beside(
         candidates.push(with(&part));
         candidates.push(vec![part]);
     }
+    if kind == Kind::Battery
+        && let Some(part) = outgrown(case, pool, &found)
+    {
+        candidates.push(found.stand.parts.iter().cloned().chain([part]).collect());
+    }
     let state = State { case, system, pool, fit: &case.fit };
     let alone = found.tried.first().and_then(|round| round.causes.first()).map_or(0.0, |one| one.2);
     let within = |stand: &Stand| {
@@ -108,7 +115,7 @@ fn beside(
         let Some(stand) = state.settle(&parts, &found.stand.noises) else { continue };
         let more = if within(&stand) { state.with_listed(&stand) } else { None };
         for stand in [more, Some(stand)].into_iter().flatten() {
-            let simpler = stand.parts.len() < found.stand.parts.len();
+            let simpler = state.pieces(&stand) < found.stand.parts.len();
             let more = worth(&stand) - worth(&found.stand);
             let clearly = more > margin(&found, simpler);
             let able = !state.impossible(&stand.parts, &stand.estimate)
@@ -134,13 +141,12 @@ fn beside(
     Ok(found)
 }
 
-/// Whether a law only draws a map: several shapes along the path, which softer ground or slopes are by their definition, and
-/// at most as many others beside.
+/// Whether a law draws a map beside something else, or several shapes of one: softer ground and slopes are that by their
+/// definition.
 fn is_map(law: &Law) -> bool {
     let only_x = |term: &[&str]| !term.is_empty() && term.iter().all(|name| *name == "x");
     let terms = law.variables_of_terms();
-    let along = terms.iter().filter(|term| only_x(term)).count();
-    along > 1 && 2 * along >= terms.len() && terms.iter().all(|term| term.contains(&"x"))
+    terms.len() > 1 && terms.iter().any(|term| only_x(term))
 }
 
 /// How much better than what was found a set with a law has to be.
@@ -160,6 +166,12 @@ impl State<'_> {
         const MOST: f64 = 3.5;
         let off = |stand: &Stand, column: usize| stand.estimate.beta[column].abs() / self.pool.sd[column];
         (0..self.pool.nuisance).all(|column| off(stand, column) < MOST.max(off(other, column)))
+    }
+
+    /// How many causes a set amounts to: every term of a law is one.
+    fn pieces(&self, stand: &Stand) -> usize {
+        let of = |part: &Part| self.cause(&part.trial).law.as_ref().map_or(1, |law| law.terms);
+        stand.parts.iter().map(of).sum()
     }
 
     /// Whether the laws of a set are at work in more than a few rows.
@@ -210,18 +222,64 @@ impl State<'_> {
 /// The regressor of a law.
 fn add(case: &mut Case, system: &System, pool: &mut Pool, law: &Law, sought: Sought) -> Part {
     let Sought { kind, per_unit, .. } = sought;
-    let number = case.causes.len();
-    case.causes.push(Cause::of_law(LawText::new(law, kind), kind));
     let rows = |run: &Vec<f64>| run.iter().map(|value| per_unit * value).collect();
     let silent = || vec![Vec::new(); case.runs.len()];
-    let column = pool.columns.len();
     let prediction: Vec<Vec<f64>> = law.prediction.iter().map(rows).collect();
-    pool.columns.push(system.column(|own| if own == kind { prediction.clone() } else { silent() }));
+    let column = system.column(|own| if own == kind { prediction.clone() } else { silent() });
+    put(case, pool, Cause::of_law(LawText::new(law, kind), kind), column)
+}
+
+/// A law among the causes, with its regressor.
+fn put(case: &mut Case, pool: &mut Pool, cause: Cause, rows: Column) -> Part {
+    let number = case.causes.len();
+    case.causes.push(cause);
+    let column = pool.columns.len();
+    pool.columns.push(rows);
     // Its amplitudes are in it: what is estimated is one, nearly.
     pool.sd.push(1.0);
     let trial = Trial { cause: number, shape: Vec::new(), columns: vec![column], terms: vec![0] };
     pool.trials.push(trial.clone());
     Part { trial, spread: None }
+}
+
+/// A loss of an electric drive that is free because it is small, and is not: a consumer of its shape, which no search can
+/// find beside it.
+fn outgrown(case: &mut Case, pool: &mut Pool, found: &Found) -> Option<Part> {
+    /// What is so many times its usual size is not small.
+    const MOST: f64 = 4.0;
+    /// The speed at which it is told [m/s].
+    const TOLD_M_S: f64 = 10.0;
+    /// A term, a square and a constant.
+    const COST: f64 = 7.5;
+    let (_, small) = pool.small.iter().find(|(id, _)| *id == SPEED_SQUARED)?;
+    let position = found.used.iter().position(|used| used == small)?;
+    let value = found.estimate.beta[position];
+    if value < MOST * pool.sd[*small] {
+        return None;
+    }
+    let sd = found.estimate.covariance[(position, position)].sqrt();
+    let watts = TOLD_M_S * TOLD_M_S;
+    let constant = |name: &str, unit: &str, value: f64, sd: Option<f64>| headland_symbolic::Constant {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        value,
+        sd,
+    };
+    let power_w = value * watts;
+    let text = LawText {
+        role: "auxiliary_power",
+        text: "a1_w * (v / v1_m_s)^2".to_owned(),
+        constants_text: format!("{{\"a1_w\": {power_w:?}, \"v1_m_s\": {TOLD_M_S:?}}}"),
+        constants: vec![
+            constant("a1_w", "W", power_w, Some(sd * watts)),
+            constant("v1_m_s", "m/s", TOLD_M_S, None),
+        ],
+        depends_on: vec!["speed_m_s"],
+        terms: 1,
+        cost: COST,
+    };
+    let column = pool.columns[*small].iter().map(|rows| rows * value).collect();
+    Some(put(case, pool, Cause::of_law(text, Kind::Battery), column))
 }
 
 /// What is sought in a balance.
@@ -397,6 +455,7 @@ impl Cause {
             constants_text: "{\"power_w\": 1.0}".to_owned(),
             constants: Vec::new(),
             depends_on: Vec::new(),
+            terms: 1,
             cost: 0.0,
         };
         Self::of_law(text, Kind::Fuel)
@@ -422,6 +481,7 @@ impl Cause {
             experiment: "repeat the runs at other speeds, places and times than these, and see whether the equation holds",
             law: Some(law),
             own: None,
+            by_run: false,
             run: None,
         }
     }

@@ -143,6 +143,9 @@ fn without(case: &Case, system: &System, pool: &Pool, found: &Found, place: usiz
         return None;
     }
     let stand = state.settle(&parts, &found.stand.noises)?;
+    if state.impossible(&stand.parts, &stand.estimate) {
+        return None;
+    }
     let mut unproven = found.unproven.clone();
     unproven.push(part.trial.cause);
     Some(state.found(stand, found.first.clone(), (found.tried.clone(), unproven), found.needed))

@@ -58,6 +58,8 @@ pub struct Cause {
     pub law: Option<LawText>,
     /// How it is written, where it is the user's.
     pub own: Option<Own>,
+    /// Whether a function of time has one value throughout each run.
+    pub by_run: bool,
     /// The one run in which it works; none where it works in all of them.
     pub run: Option<usize>,
 }
@@ -84,6 +86,7 @@ pub fn cause(
         experiment,
         law: None,
         own: None,
+        by_run: false,
         run: None,
     }
 }
@@ -95,8 +98,13 @@ impl Cause {
         Some((place("from_s")?, place("to_s")?))
     }
 
-    /// Whether a shape can be: what lasts has to begin before it ends.
+    /// Whether a shape can be: within its limits, and what lasts has to begin before it ends.
     pub fn possible(&self, shape: &[f64]) -> bool {
+        let shapes = self.terms.iter().filter(|term| !term.linear).zip(shape);
+        let mut free = shapes.filter(|(term, _)| term.low < term.high);
+        if free.any(|(term, value)| !(term.low..=term.high).contains(value)) {
+            return false;
+        }
         let Some((from, to)) = self.window() else { return true };
         let place = |term: usize| self.terms[..term].iter().filter(|term| !term.linear).count();
         match (shape.get(place(from)), shape.get(place(to))) {
@@ -138,6 +146,13 @@ impl Cause {
         self
     }
 
+    /// With a value of its own in each run.
+    pub fn by_run(mut self) -> Self {
+        self.form = Form::OverTime;
+        self.by_run = true;
+        self
+    }
+
     pub fn artefact(mut self) -> Self {
         self.class = Class::Artefact;
         self.form = Form::Measured;
@@ -174,6 +189,7 @@ impl Cause {
             (false, _) => None,
             (true, "grade") => Some(("grade_constant", "grade")),
             (true, "soft_ground") => Some(("rolling_resistance", "coefficient")),
+            (true, _) if self.by_run => Some((self.id, self.terms[0].name)),
             (true, "payload_change") => Some(("mass", "extra_mass_kg")),
             (true, _) => Some(("auxiliary_power", "power_w")),
         }
@@ -217,11 +233,13 @@ impl Cause {
                 values[2]
             ),
             "variator_loss" => {
-                format!("variator_loss(loss: {:?}, node_speeds_m_s: [{:?}])", values[0], values[1])
+                format!("variator_loss(loss: {:?}, node_speeds_m_s: {:?})", values[0], &values[1..])
             }
             "shift_transient" => format!(
-                "shift_transient(force_n: {:?}, speeds_m_s: [{:?}], width_m_s: {:?})",
-                values[0], values[1], values[2]
+                "shift_transient(force_n: {:?}, width_m_s: {:?}, speeds_m_s: {:?})",
+                values[0],
+                values[1],
+                &values[2..]
             ),
             _ => {
                 let fields: Vec<String> = self

@@ -26,6 +26,8 @@ pub struct LawText {
     pub constants: Vec<headland_symbolic::Constant>,
     /// Channels that it depends on.
     pub depends_on: Vec<&'static str>,
+    /// Terms that are added.
+    pub terms: usize,
     /// What the choice of it costs.
     pub cost: f64,
 }
@@ -45,6 +47,7 @@ impl LawText {
                 .filter(|(name, _)| law.names(name))
                 .map(|(_, channel)| channel)
                 .collect(),
+            terms: law.terms,
             cost: PER_PIECE * law.complexity as f64,
         }
     }

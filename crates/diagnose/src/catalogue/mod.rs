@@ -38,8 +38,10 @@ pub struct Around {
     pub rotating_mass_kg: f64,
     /// Least and greatest mass of a run [kg].
     pub masses_kg: (f64, f64),
-    /// Resistance over weight at walking speed.
+    /// Resistance over weight, as usual as any.
     pub coefficient: f64,
+    /// Resistance of the ground over weight at walking speed.
+    pub soil_coefficient: f64,
     /// Largest number of runs on one path.
     pub passes: usize,
     /// Range of the air temperature [K]; 0 where it is not known.
@@ -50,7 +52,16 @@ pub struct Around {
     pub beginnings: Vec<usize>,
 }
 
+/// Nobody measures in a stronger wind than a fresh gale, 8 on Beaufort's scale.
+const MOST_WIND_M_S: f64 = 20.0;
+
 const MOTION: &[Kind] = &[Kind::Motion, Kind::Battery, Kind::Fuel];
+
+/// A time constant; what takes many times as long as the longest run does not change within it.
+fn fading(around: &Around) -> Term {
+    const MOST_RUNS: f64 = 8.0;
+    shape("time_constant_s", "s").within(0.0, MOST_RUNS * around.duration_s)
+}
 
 /// Begin and end of a spell that is the same in every run, in eighths of the longest.
 fn windows(duration_s: f64) -> Vec<Vec<f64>> {
@@ -78,6 +89,101 @@ pub fn spell(id: &str) -> Cause {
     cause(id, &[Kind::Motion], terms, equation, &["time_s"], words, experiment).over(Form::OverTime)
 }
 
+/// What may differ from run to run: the surface, what is hitched or mounted.
+fn by_run(around: &Around, pull: Term) -> [Cause; 4] {
+    let coefficient = linear("coefficient", "1", 0.015).within(-around.coefficient, MOST_SIZES * 0.015);
+    let area = linear("extra_area_m2", "m²", 0.4 * around.drag_area_m2.max(0.5));
+    let one = |id, term, equation, depends_on, words, experiment| {
+        cause(id, MOTION, vec![term], equation, depends_on, words, experiment).by_run()
+    };
+    [
+        one(
+            "rolling_resistance",
+            coefficient,
+            "F = Δc N in each run",
+            &[],
+            "rolling resistance that differs from run to run",
+            "log the surface and the tyres' pressure of each run, or repeat one run at once",
+        ),
+        one(
+            "drawbar_load",
+            pull,
+            "F = F₀ in each run",
+            &[],
+            "a pull that differs from run to run",
+            "log what is hitched in each run, or the drawbar force",
+        ),
+        one(
+            "aerodynamic_drag",
+            area,
+            "F = ½ ρ ΔCdA v² in each run",
+            &["speed_m_s"],
+            "aerodynamic drag that differs from run to run",
+            "log what is mounted in each run, or repeat one run at once",
+        ),
+        one(
+            "mass",
+            linear("extra_mass_kg", "kg", 0.08 * around.mass_kg)
+                .within(-0.5 * around.mass_kg, around.mass_kg),
+            "F = Δm (dv/dt + g (sin θ + c cos θ)) in each run",
+            &["acceleration_m_s2"],
+            "a mass that differs from run to run",
+            "weigh the vehicle before each run",
+        ),
+    ]
+}
+
+/// So many of the speeds that are driven, in all ways to choose them.
+fn speeds_of(around: &Around, count: usize) -> Vec<Vec<f64>> {
+    let speeds = &around.speeds_m_s;
+    match count {
+        1 => speeds.iter().map(|speed| vec![*speed]).collect(),
+        _ => (0..speeds.len())
+            .flat_map(|one| (one + 1..speeds.len()).map(move |other| vec![speeds[one], speeds[other]]))
+            .collect(),
+    }
+}
+
+/// Losses between so many mechanical points.
+fn variator_loss(around: &Around, count: usize) -> Cause {
+    let mut terms = vec![positive("loss", "1", 0.1)];
+    terms.extend(std::iter::repeat_n(shape("node_speed_m_s", "m/s"), count));
+    let nodes = speeds_of(around, count).into_iter();
+    let nodes = nodes.map(|speeds| speeds.into_iter().map(|speed| speed.max(0.5)).collect());
+    cause(
+        "variator_loss",
+        &[Kind::Motion, Kind::Fuel],
+        terms,
+        "F = −λ min |1 − v/v_n| |F_drive|",
+        &["tractive_force_n", "speed_m_s"],
+        "losses of the variator away from its mechanical points",
+        "hold steady speeds across the range at one load",
+    )
+    .shaped(nodes.collect())
+}
+
+/// Losses at so many changes of range.
+fn shift_transient(around: &Around, weight_n: f64, count: usize) -> Cause {
+    /// A bell is so wide as a share of its speed.
+    const WIDTH: f64 = 0.05;
+    let mut terms = vec![positive("force_n", "N", 0.03 * weight_n), shape("width_m_s", "m/s")];
+    terms.extend(std::iter::repeat_n(shape("speed_m_s", "m/s"), count));
+    let bells = speeds_of(around, count).into_iter().map(|speeds| {
+        let width_m_s = WIDTH * speeds[0].max(1.0);
+        std::iter::once(width_m_s).chain(speeds).collect()
+    });
+    cause(
+        "shift_transient",
+        &[Kind::Motion],
+        terms,
+        "F = F₀ Σ e^(−½((v − v_s)/b)²)",
+        &["speed_m_s"],
+        "losses while ranges are shifted",
+        "ramp slowly up and down through the shift",
+    )
+    .shaped(bells.collect())
+}
+
 /// The causes that the recording could show at all.
 #[allow(clippy::too_many_lines, reason = "a table")]
 pub fn causes(around: &Around) -> Vec<Cause> {
@@ -91,7 +197,10 @@ pub fn causes(around: &Around) -> Vec<Cause> {
         cause(
             "wind",
             MOTION,
-            vec![linear("north_m_s", "m/s", 5.0), linear("east_m_s", "m/s", 5.0)],
+            vec![
+                linear("north_m_s", "m/s", 5.0).within(-MOST_WIND_M_S, MOST_WIND_M_S),
+                linear("east_m_s", "m/s", 5.0).within(-MOST_WIND_M_S, MOST_WIND_M_S),
+            ],
             "F = ½ ρ CdA (|v − w| (v − w)ₓ − v²)",
             &["speed_m_s", "heading_rad"],
             "a wind",
@@ -194,7 +303,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
         cause(
             "rolling_temperature",
             MOTION,
-            vec![positive("cold_coefficient", "1", 0.01), shape("time_constant_s", "s")],
+            vec![positive("cold_coefficient", "1", 0.01), fading(around)],
             "F = Δc e^(−t/τ) N",
             &["time_s"],
             "tyres that warm up",
@@ -207,7 +316,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             vec![
                 linear("cold_force_n", "N", 0.006 * weight),
                 positive("cold_viscous_n_s_m", "N s/m", 0.001 * weight),
-                shape("time_constant_s", "s"),
+                fading(around),
             ],
             "F = (F₀ + k v) e^(−t/τ)",
             &["time_s", "speed_m_s"],
@@ -278,6 +387,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
                 .collect(),
         ),
     ];
+    all.extend(by_run(around, pull));
     if has("curvature_per_m") {
         all.push(cause(
             "cornering_drag",
@@ -289,14 +399,14 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             "drive circles of two radii, both ways",
         ));
     }
-    if around.masses_kg.1 > 1.02 * around.masses_kg.0 {
+    if around.masses_kg.1 > 1.02 * around.masses_kg.0 && around.soil_coefficient > 0.0 {
         all.push(
             cause(
                 "load_dependence",
                 MOTION,
                 vec![
-                    linear("exponent_change", "1", 0.2).within(-0.7, 0.7),
-                    shape("coefficient", "1").held(around.coefficient),
+                    linear("exponent_change", "1", 0.2).within(-0.7, 1.5),
+                    shape("coefficient", "1").held(around.soil_coefficient),
                     shape("reference_mass_kg", "kg").held(around.mass_kg),
                 ],
                 "F = c W ((W / W₀)^(β − 1) − 1)",
@@ -304,7 +414,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
                 "rolling resistance that is not in proportion to the load",
                 "repeat with two masses that differ by a quarter",
             )
-            .shaped(vec![vec![around.coefficient, around.mass_kg]]),
+            .shaped(vec![vec![around.soil_coefficient, around.mass_kg]]),
         );
     }
     if around.passes > 2 {
@@ -331,34 +441,10 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             "a loss in the driveline in proportion to its load",
             "drive at the same speed with two loads",
         ));
-        all.push(
-            cause(
-                "variator_loss",
-                &[Kind::Motion, Kind::Fuel],
-                vec![positive("loss", "1", 0.1), shape("node_speed_m_s", "m/s")],
-                "F = −λ |1 − v/v_n| |F_drive|",
-                &["tractive_force_n", "speed_m_s"],
-                "losses of the variator away from its mechanical points",
-                "hold steady speeds across the range at one load",
-            )
-            .shaped(around.speeds_m_s[1..4].iter().map(|v| vec![v.max(0.5)]).collect()),
-        );
-        all.push(
-            cause(
-                "shift_transient",
-                &[Kind::Motion],
-                vec![
-                    positive("force_n", "N", 0.03 * weight),
-                    shape("speed_m_s", "m/s"),
-                    shape("width_m_s", "m/s"),
-                ],
-                "F = F₀ e^(−½((v − v_s)/b)²)",
-                &["speed_m_s"],
-                "losses while ranges are shifted",
-                "ramp slowly up and down through the shift",
-            )
-            .shaped(around.speeds_m_s.iter().map(|v| vec![*v, 0.05 * v.max(1.0)]).collect()),
-        );
+        for count in [1, 2] {
+            all.push(variator_loss(around, count));
+            all.push(shift_transient(around, weight, count));
+        }
     }
     if around.temperatures_k > 3.0 {
         all.push(

@@ -1,8 +1,8 @@
 //! What takes power and makes no force.
 
-use super::Around;
 use super::cause::{Cause, Form, cause};
-use super::term::{linear, positive, shape};
+use super::term::{linear, positive};
+use super::{Around, fading};
 use crate::balance::Kind;
 
 /// Adds what the drive of this vehicle could be missing.
@@ -52,7 +52,7 @@ pub fn powers(all: &mut Vec<Cause>, around: &Around) {
         let cold = cause(
             "cold_start",
             &[Kind::Fuel],
-            vec![positive("cold_torque_n_m", "N m", 30.0), shape("time_constant_s", "s")],
+            vec![positive("cold_torque_n_m", "N m", 30.0), fading(around)],
             "P = T e^(−t/τ) ω / e",
             &["time_s", "engine_speed_rad_s"],
             if run.is_some() {

@@ -59,8 +59,25 @@ const TELLS: f64 = 3.0;
 /// Odds beyond which more is not better: a thousand to one.
 const ENOUGH: f64 = 7.0;
 
-/// Proposes runs.
+/// Proposes runs. Where what was found cannot be driven otherwise than it was, nothing is proposed; the diagnosis stands.
 pub fn propose(
+    case: &Case,
+    system: &System,
+    pool: &Pool,
+    found: &Found,
+    refined: &Refined,
+) -> Result<Proposals, DiagnoseError> {
+    match thought_through(case, system, pool, found, refined) {
+        Err(DiagnoseError::Interrupted) => Err(DiagnoseError::Interrupted),
+        Err(_) => {
+            let null_space = null_space::sentences(case, system, pool, found, refined);
+            Ok(Proposals { null_space, next: vec![None; refined.causes.len()], ..Proposals::default() })
+        }
+        proposals => proposals,
+    }
+}
+
+fn thought_through(
     case: &Case,
     system: &System,
     pool: &Pool,
@@ -89,9 +106,8 @@ pub fn propose(
     let doubted: Vec<usize> = trials.iter().map(|trial| trial.cause).collect();
     let mut stage = match Stage::new(case, refined, &doubted) {
         Ok(Some(stage)) => stage,
-        Err(DiagnoseError::Interrupted) => return Err(DiagnoseError::Interrupted),
-        // Where what was found cannot be driven otherwise than it was, nothing is proposed; the diagnosis stands.
-        Ok(None) | Err(_) => return Ok(proposals),
+        Ok(None) => return Ok(proposals),
+        Err(error) => return Err(error),
     };
     for trial in trials {
         stage.bring(trial.cause, &trial.shape)?;

@@ -94,7 +94,7 @@ fn hold(values: &mut [f64]) {
     }
 }
 
-/// Each parameter moved to the end of its interval; what that changes adds up as squares, as if they were independent.
+/// Each parameter moved to an end of its interval; what that changes adds up as squares, as if they were independent.
 fn of_parameters(
     case: &Case,
     system: &System,
@@ -110,9 +110,17 @@ fn of_parameters(
             continue;
         }
         any = true;
-        let mut moved = cured.clone();
-        moved.values[index].0 = value + half;
-        let there = reconstruct(case, system, &moved, refined)?;
+        // To the other end where the effect can be no more: the band is as wide on both sides.
+        let to = |value: f64| {
+            let mut moved = cured.clone();
+            moved.values[index].0 = value;
+            reconstruct(case, system, &moved, refined)
+        };
+        let there = match to(value + half) {
+            Err(DiagnoseError::Interrupted) => return Err(DiagnoseError::Interrupted),
+            Err(_) => to(value - half)?,
+            Ok(there) => there,
+        };
         for (squares, (there, here)) in squares.iter_mut().zip(there.runs.iter().zip(&effect.runs)) {
             for (square, (there, here)) in squares.iter_mut().zip(there.iter().zip(here)) {
                 *square += (there - here).powi(2);

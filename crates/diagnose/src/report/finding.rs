@@ -242,9 +242,11 @@ fn parameters(cured: &Cured) -> Vec<ParameterReport> {
             let from = east.atan2(north).rem_euclid(std::f64::consts::TAU);
             let along = (north * sd(north_ci)).hypot(east * sd(east_ci)) / speed.max(1e-9);
             let across = (east * sd(north_ci)).hypot(north * sd(east_ci)) / speed.max(1e-9).powi(2);
+            // Every direction is within half a turn.
+            let half = (HALF_95 * across).min(std::f64::consts::PI);
             vec![
                 one("speed_m_s", speed, [(speed - HALF_95 * along).max(0.0), speed + HALF_95 * along], "m/s"),
-                one("from_rad", from, [from - HALF_95 * across, from + HALF_95 * across], "rad"),
+                one("from_rad", from, [from - half, from + half], "rad"),
             ]
         }
         // As `recording.ron` has it: what a channel shows over what it ought to.
@@ -291,7 +293,7 @@ fn function_parameters(cause: &Cause, function: &crate::profile::Function) -> Ve
     let rms = (sum / count.max(1) as f64).sqrt();
     let unit = if cause.form == Form::OverPosition { "m" } else { "s" };
     let length = function.spread.length;
-    vec![
+    let mut told = vec![
         ParameterReport {
             name: term.name.to_owned(),
             value: peak.0,
@@ -304,13 +306,16 @@ fn function_parameters(cause: &Cause, function: &crate::profile::Function) -> Ve
             ci95: [rms - HALF_95 * peak.1, rms + HALF_95 * peak.1],
             unit: term.unit.to_owned(),
         },
-        ParameterReport {
+    ];
+    if !cause.by_run {
+        told.push(ParameterReport {
             name: format!("length_{unit}"),
             value: length,
             ci95: [0.5 * length, 2.0 * length],
             unit: unit.to_owned(),
-        },
-    ]
+        });
+    }
+    told
 }
 
 fn experiment(cause: &Cause, cured: &Cured, case: &Case) -> String {

@@ -90,6 +90,10 @@ enum Values {
 fn values(cured: &Cured, parameters: &[ParameterReport]) -> Values {
     let find = |name: &str| parameters.iter().find(|one| one.name == name);
     if let ("wind", Some(speed), Some(from)) = (cured.cause.id, find("speed_m_s"), find("from_rad")) {
+        // Runs that all go the same way, there and back, show no more of it.
+        if from.ci95[1] - from.ci95[0] > std::f64::consts::PI {
+            return Values::Of("of which these runs show only the part along their lanes".to_owned());
+        }
         let degrees = |rad: f64| rad.to_degrees();
         return Values::Of(format!(
             "of {} from {}°",

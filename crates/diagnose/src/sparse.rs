@@ -1,0 +1,163 @@
+//! Channels that come less often than the log has rows: loggers of different rates, joined row by row, leave cells empty.
+//! Between two values such a channel is what lies between them, and that is said. So are short gaps in what changes slowly
+//! around the vehicle, without which no run could be driven.
+
+use crate::DiagnoseError;
+use headland_trace::{Origin, Trace};
+use std::collections::BTreeMap;
+
+/// A channel of a run that was filled.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sparse {
+    channel: String,
+    /// It comes every so many rows; none where it lacks a few.
+    every: Option<usize>,
+}
+
+/// Fewer values tell no rate.
+const FEWEST: usize = 20;
+/// A channel is sparse where this share of its values comes after the usual number of rows.
+const REGULAR: f64 = 0.9;
+/// What comes less often than this is no channel at a lower rate.
+const LONGEST: usize = 50;
+/// Channels that are on or off, or go around: nothing lies between.
+const SWITCHES: [&str; 4] = ["coasting", "brake", "heading_rad", "wind_direction_rad"];
+/// What surrounds the vehicle and changes slowly.
+const AROUND: [&str; 6] = [
+    "curvature_per_m",
+    "air_temperature_c",
+    "oil_temperature_c",
+    "heading_rad",
+    "wind_speed_m_s",
+    "wind_direction_rad",
+];
+/// A gap of what changes slowly that is bridged [s].
+const SHORT_S: f64 = 3.0;
+
+/// A run whose sparse channels hold a value in every row between their first and their last one, and which those are.
+///
+/// # Errors
+/// Where a trace cannot be put together.
+pub fn filled(trace: &Trace) -> Result<(Trace, Vec<Sparse>), DiagnoseError> {
+    let mut found = Vec::new();
+    let mut made = Trace::new(trace.time_s().to_vec())?;
+    for channel in trace.channels() {
+        let known: Vec<usize> =
+            (0..channel.values.len()).filter(|row| channel.values[*row].is_finite()).collect();
+        let every = spacing(&known);
+        let slow = AROUND.contains(&channel.name.as_str()) && known.len() < channel.values.len();
+        if known.is_empty() || every.is_none() && !slow {
+            made.push(channel.name.clone(), channel.values.clone(), channel.origin)?;
+            continue;
+        }
+        let time_s = trace.time_s();
+        let near = |from: usize, to: usize| match every {
+            Some(every) => to - from <= every + 1,
+            None => time_s[to] - time_s[from] <= SHORT_S,
+        };
+        let switch = SWITCHES.contains(&channel.name.as_str());
+        let values = between(time_s, &channel.values, &known, &near, switch);
+        if values.iter().zip(&channel.values).any(|(filled, own)| filled.is_finite() && !own.is_finite()) {
+            found.push(Sparse { channel: channel.name.clone(), every });
+        }
+        made.push(channel.name.clone(), values, Origin::Measured)?;
+    }
+    Ok((made, found))
+}
+
+/// After how many rows a channel regularly has its next value; none where that is every row, or not regular.
+fn spacing(known: &[usize]) -> Option<usize> {
+    let steps: Vec<usize> = known.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if steps.len() < FEWEST {
+        return None;
+    }
+    let mut sorted = steps.clone();
+    sorted.sort_unstable();
+    let usual = sorted[sorted.len() / 2];
+    let regular = steps.iter().filter(|step| step.abs_diff(usual) <= usize::from(usual > 2)).count();
+    ((2..=LONGEST).contains(&usual) && regular as f64 >= REGULAR * steps.len() as f64).then_some(usual)
+}
+
+/// Values between those that are known where these lie near each other, and beyond the first and the last.
+fn between(
+    time_s: &[f64],
+    values: &[f64],
+    known: &[usize],
+    near: &dyn Fn(usize, usize) -> bool,
+    switch: bool,
+) -> Vec<f64> {
+    let mut all = values.to_vec();
+    for pair in known.windows(2) {
+        let (from, to) = (pair[0], pair[1]);
+        if !near(from, to) {
+            continue;
+        }
+        for row in from + 1..to {
+            let share = (time_s[row] - time_s[from]) / (time_s[to] - time_s[from]);
+            all[row] = if switch { values[from] } else { values[from] + share * (values[to] - values[from]) };
+        }
+    }
+    if let (Some(&first), Some(&last)) = (known.first(), known.last()) {
+        if near(0, first) {
+            all[..first].fill(values[first]);
+        }
+        if near(last, values.len() - 1) {
+            all[last..].fill(values[last]);
+        }
+    }
+    all
+}
+
+/// What is said of them.
+pub fn told(sparse: &[Sparse]) -> Vec<String> {
+    let mut runs: BTreeMap<(&str, Option<usize>), usize> = BTreeMap::new();
+    for one in sparse {
+        *runs.entry((&one.channel, one.every)).or_default() += 1;
+    }
+    let one = |((channel, every), count): ((&str, Option<usize>), usize)| {
+        let runs = if count == 1 { "one run".to_owned() } else { format!("{count} runs") };
+        match every {
+            Some(every) => format!(
+                "`{channel}` has a value in one row of {every} in {runs}; between two values it is taken as what lies \
+                 between."
+            ),
+            None => format!(
+                "`{channel}` lacks values in {runs}; gaps of up to {SHORT_S} s are taken as what lies between their ends."
+            ),
+        }
+    };
+    runs.into_iter().map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with(value: impl Fn(usize) -> f64) -> Trace {
+        let mut trace = Trace::new((0..100).map(|row| 0.1 * f64::from(row)).collect()).unwrap();
+        trace.push("tractive_force_n", (0..100).map(value).collect(), Origin::Measured).unwrap();
+        trace
+    }
+
+    #[test]
+    fn every_second_value_is_filled_with_what_lies_between_and_told() {
+        let (made, sparse) =
+            filled(&with(|row| if row.is_multiple_of(2) { row as f64 } else { f64::NAN })).unwrap();
+        let values = made.get("tractive_force_n").unwrap();
+        assert!((0..99).all(|row| (values[row] - row as f64).abs() < 1e-9) && values[99] == 98.0);
+        assert_eq!(sparse, [Sparse { channel: "tractive_force_n".to_owned(), every: Some(2) }]);
+        assert!(told(&sparse)[0].contains("one row of 2 in one run"));
+    }
+
+    #[test]
+    fn a_gap_stays_a_gap() {
+        let gap = |row: usize| if (40..60).contains(&row) { f64::NAN } else { 1.0 };
+        let (made, sparse) = filled(&with(gap)).unwrap();
+        assert!(sparse.is_empty() && made.get("tractive_force_n").unwrap()[50].is_nan());
+        let thin =
+            |row: usize| if row.is_multiple_of(2) && !(40..60).contains(&row) { 1.0 } else { f64::NAN };
+        let (made, sparse) = filled(&with(thin)).unwrap();
+        let values = made.get("tractive_force_n").unwrap();
+        assert!(sparse.len() == 1 && values[50].is_nan() && values[31] == 1.0);
+    }
+}

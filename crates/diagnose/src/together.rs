@@ -1,0 +1,75 @@
+//! Causes that say nothing one by one: what each of them leaves of the others passes for noise. They are grown together at
+//! the noise that neighbouring rows show, and judged with the noise that they leave.
+
+use crate::catalogue::Cause;
+use crate::noise::Noises;
+use crate::search::MOST_CAUSES;
+use crate::state::{Part, Stand, State};
+use rayon::prelude::*;
+
+/// So many sets are grown side by side.
+const BEAM: usize = 6;
+/// Noise that neighbouring rows show is less than all that is left where its variance is below this share of it.
+const LESS: f64 = 0.7;
+
+/// A set of causes, and how good it is at a noise.
+type Scored = (f64, Vec<Part>);
+
+impl State<'_> {
+    /// Sets of at least two causes more than `start` has, each with the noise that it leaves.
+    pub fn together(&self, start: &Stand, banned: &[&str]) -> Vec<Stand> {
+        let noises = self.quiet(start);
+        let pairs = noises.each.iter().zip(&start.noises.each);
+        if !pairs.into_iter().any(|(quiet, loud)| quiet.sd().powi(2) < LESS * loud.sd().powi(2)) {
+            return Vec::new();
+        }
+        let mut open: Vec<Vec<Part>> = vec![start.parts.clone()];
+        let mut all: Vec<Vec<Part>> = Vec::new();
+        while open.first().is_some_and(|parts| parts.len() < MOST_CAUSES) {
+            let mut grown: Vec<Scored> =
+                open.iter().flat_map(|parts| self.one_more(parts, &noises, banned)).collect();
+            grown.sort_by(|one, other| other.0.total_cmp(&one.0));
+            let mut known: Vec<Vec<&str>> = Vec::new();
+            grown.retain(|(_, parts)| {
+                let mut ids: Vec<&str> = parts.iter().map(|part| self.id(&part.trial)).collect();
+                ids.sort_unstable();
+                let new = !known.contains(&ids);
+                known.push(ids);
+                new
+            });
+            grown.truncate(BEAM);
+            open = grown.into_iter().map(|(_, parts)| parts).collect();
+            if open.first().is_some_and(|parts| parts.len() > start.parts.len() + 1) {
+                all.extend(open.iter().cloned());
+            }
+        }
+        let settled = |parts: Vec<Part>| {
+            let stand = self.settle(&parts, &noises)?;
+            (!self.impossible(&stand.parts, &stand.estimate) && self.sensible(&stand)).then_some(stand)
+        };
+        all.into_par_iter().filter_map(settled).collect()
+    }
+
+    /// A set with one cause more that is no function, the best shape of each cause, at a noise.
+    fn one_more(&self, parts: &[Part], noises: &Noises, banned: &[&str]) -> Vec<Scored> {
+        let Some(reduced) = self.reduced(noises, parts) else { return Vec::new() };
+        let (used, sd) = (self.columns(parts), self.sd());
+        let taken = |cause: &Cause| {
+            banned.contains(&cause.id) || parts.iter().any(|part| self.id(&part.trial) == cause.id)
+        };
+        let mut all: Vec<Scored> = Vec::new();
+        for trial in &self.pool.trials {
+            let cause = self.cause(trial);
+            if cause.is_function() || taken(cause) {
+                continue;
+            }
+            let with: Vec<usize> = used.iter().chain(&trial.columns).copied().collect();
+            let Some(estimate) = reduced.estimate(&with, &sd) else { continue };
+            let parts: Vec<Part> =
+                parts.iter().cloned().chain([Part { trial: trial.clone(), spread: None }]).collect();
+            let score = estimate.log_evidence + self.heavy(&with, &estimate.beta) - self.choices(&parts);
+            all.push((score, parts));
+        }
+        all
+    }
+}

@@ -12,6 +12,7 @@
 )]
 
 use crate::Model;
+use crate::deciding::Deciding;
 use crate::ledger::{
     AIR, AUXILIARY, BRAKES, DRAWBAR, FIRST_LOSS, HYDRAULICS, LOSSES_AT_ONCE, PTO, SLOPE, SOIL, SOURCE, Slots,
 };
@@ -116,6 +117,7 @@ pub(crate) struct Scratch {
     pub modes: Vec<Mode>,
     /// What each axle does.
     pub wheels: WheelScratch,
+    pub deciding: Deciding,
 }
 
 /// What is asked of driveline and ground at one instant.
@@ -199,13 +201,14 @@ pub(crate) struct Rolled {
 }
 
 impl Model {
-    /// Evaluates the balance; writes the rates of all states and the power of every account [W].
+    /// Evaluates the balance; writes the rates of all states and the power of every account [W]. Where it `DECIDES`, the driveline
+    /// decides as soon as it is known what is asked of it, as far as that does not hang on what it gives.
     #[allow(
         clippy::too_many_arguments,
         reason = "the inner loop: everything is passed, nothing is allocated"
     )]
     #[inline(always)]
-    pub(crate) fn balance(
+    pub(crate) fn balance<const DECIDES: bool>(
         &self,
         point: Point,
         command: Command,
@@ -255,7 +258,7 @@ impl Model {
             // Everything goes there as a copy: what another function may look at does not stay in registers here.
             return self.carried((axles, &**soil), asked, sums, slots, rates, powers, scratch);
         }
-        let rolled = self.rolling(&asked, &sums, rates);
+        let rolled = self.rolling::<DECIDES>(&asked, &sums, rates, &mut scratch.deciding);
         tell(&asked, &sums, &rolled, slots, &scratch.actions, powers)
     }
 

@@ -13,6 +13,7 @@ mod carriage;
 mod cycle;
 #[cfg(test)]
 mod cycle_tests;
+mod deciding;
 mod driving;
 #[cfg(test)]
 mod effect_tests;

@@ -134,8 +134,22 @@ impl Machine<'_> {
     #[allow(clippy::inline_always, reason = "as the balance: nothing is put together that nobody looks at")]
     #[inline(always)]
     fn at_middle(&mut self, step_s: f64, to_m_s: f64, control: &impl Control) -> Instant {
-        let instant = self.ask_middle(step_s, to_m_s, control);
-        if self.decide(&instant) { self.ask_middle(step_s, to_m_s, control) } else { instant }
+        let own = FIRST_STATE + self.layout.driveline.start..FIRST_STATE + self.layout.driveline.end;
+        if own.is_empty() {
+            return self.ask_middle::<false>(step_s, to_m_s, control);
+        }
+        self.scratch.deciding.before(&self.y[own.clone()], 0.5 * step_s);
+        let instant = self.ask_middle::<true>(step_s, to_m_s, control);
+        let deciding = &self.scratch.deciding;
+        if deciding.done {
+            self.y[own.clone()].copy_from_slice(&deciding.begin);
+            if deciding.changed {
+                self.stage[own].copy_from_slice(&deciding.middle);
+            }
+            return instant;
+        }
+        // What is asked hangs on what is given, so that has to be known first.
+        if self.decide(&instant) { self.ask_middle::<false>(step_s, to_m_s, control) } else { instant }
     }
 
     /// Puts together where it comes to at the end of the step, for [`Machine::pass`].
@@ -157,7 +171,12 @@ impl Machine<'_> {
     /// States in the middle are foreseen with the rates of the step before.
     #[allow(clippy::inline_always, reason = "as the balance")]
     #[inline(always)]
-    fn ask_middle(&mut self, step_s: f64, to_m_s: f64, control: &impl Control) -> Instant {
+    fn ask_middle<const DECIDES: bool>(
+        &mut self,
+        step_s: f64,
+        to_m_s: f64,
+        control: &impl Control,
+    ) -> Instant {
         let half_s = 0.5 * step_s;
         let states = FIRST_STATE..FIRST_STATE + self.layout.states.len();
         let mut y = std::mem::take(&mut self.stage);
@@ -169,7 +188,7 @@ impl Machine<'_> {
         let middle_m_s = 0.5 * (self.y[SPEED] + to_m_s);
         y[POSITION] = self.y[POSITION] + 0.5 * half_s * (self.y[SPEED] + middle_m_s);
         y[SPEED] = middle_m_s;
-        let instant = self.derive(self.time_s + half_s, &y, sign(middle_m_s), control, &mut slope);
+        let instant = self.derive::<DECIDES>(self.time_s + half_s, &y, sign(middle_m_s), control, &mut slope);
         (self.stage, self.slopes[0]) = (y, slope);
         instant
     }

@@ -3,13 +3,20 @@
 #![allow(clippy::inline_always, reason = "a part of the balance")]
 
 use crate::balance::{Asked, Command, MOST_SLIP, Rolled, Sums};
+use crate::deciding::Deciding;
 use crate::{Model, Resistance};
 use headland_plugin::{Contact, Situation};
 
 impl Model {
     /// The forces of a vehicle that rolls as a whole.
     #[inline(always)]
-    pub(crate) fn rolling(&self, asked: &Asked, sums: &Sums, rates: &mut [f64]) -> Rolled {
+    pub(crate) fn rolling<const DECIDES: bool>(
+        &self,
+        asked: &Asked,
+        sums: &Sums,
+        rates: &mut [f64],
+        deciding: &mut Deciding,
+    ) -> Rolled {
         let Asked { mut situation, command, given, layout, states, direction, .. } = *asked;
         let Asked { effective_mass_kg, free_n, mut demand, .. } = *asked;
         let speed_m_s = situation.speed_m_s;
@@ -28,7 +35,11 @@ impl Model {
                 let resting = speed_m_s == 0.0 && wanted == 0.0;
                 let ground_n = if resting { 0.0 } else { effective_mass_kg * wanted - free_n + way * held_n };
                 // F − way ε |F| = ground.
-                ground_n / (1.0 - sums.loss_share * (way * ground_n).signum())
+                if sums.loss_share == 0.0 {
+                    ground_n
+                } else {
+                    ground_n / (1.0 - sums.loss_share * (way * ground_n).signum())
+                }
             }
             Command::Push(wanted) => effective_mass_kg * wanted,
         };
@@ -42,13 +53,17 @@ impl Model {
             speed_m_s / (1.0 - slip)
         };
         demand.speed_m_s = slip_of(demand.force_n);
-        let mut delivery = self.driveline.deliver(&demand, &states[range.clone()], &mut rates[range.clone()]);
+        let mut own = &states[range.clone()];
+        if DECIDES && sums.slip_per_n == 0.0 && !own.is_empty() {
+            own = deciding.decide(&*self.driveline, &demand, own, &rates[range.clone()]);
+        }
+        let mut delivery = self.driveline.deliver(&demand, own, &mut rates[range.clone()]);
         // A recorded motion was driven by what it took, and a recorded force was there, whatever the driveline of the model
         // could have given.
         let recorded = given.driven || matches!(command, Command::Recorded(_));
         if sums.slip_per_n != 0.0 && delivery.force_n != demand.force_n && !recorded {
             demand.speed_m_s = slip_of(delivery.force_n);
-            delivery = self.driveline.deliver(&demand, &states[range.clone()], &mut rates[range]);
+            delivery = self.driveline.deliver(&demand, own, &mut rates[range]);
         }
         if let Command::Recorded(force_n) = command {
             // The recording has the last word on the force; what the model would not have given is made up by no one.

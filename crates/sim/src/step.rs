@@ -9,6 +9,7 @@ use crate::balance::{Command, Given, Instant, Point, Scratch};
 use crate::borne::Borne;
 use crate::carriage::Carriage;
 use crate::cycle::Hopeless;
+use crate::deciding::Deciding;
 use crate::ledger::{MASS_CHANGE, Slots};
 use crate::model::Layout;
 use crate::wheels::{AxleState, WheelScratch};
@@ -89,6 +90,7 @@ impl<'a> Machine<'a> {
             actions: vec![headland_plugin::Action::default(); model.effects.len()],
             modes: vec![headland_plugin::Mode::default(); model.tasks.len()],
             wheels: WheelScratch::default(),
+            deciding: Deciding::default(),
         };
         Self {
             model,
@@ -229,7 +231,7 @@ impl<'a> Machine<'a> {
         let y = std::mem::take(&mut self.y);
         let mut slope = std::mem::take(&mut self.slopes[0]);
         let direction = sign(y[SPEED]);
-        let instant = self.derive(self.time_s, &y, direction, control, &mut slope);
+        let instant = self.derive::<false>(self.time_s, &y, direction, control, &mut slope);
         self.y = y;
         self.slopes[0] = slope;
         if self.first_kinetic_j.is_none() {
@@ -256,7 +258,7 @@ impl<'a> Machine<'a> {
 
     #[allow(clippy::inline_always, reason = "see the balance")]
     #[inline(always)]
-    pub(crate) fn derive(
+    pub(crate) fn derive<const DECIDES: bool>(
         &mut self,
         time_s: f64,
         y: &[f64],
@@ -274,7 +276,7 @@ impl<'a> Machine<'a> {
             rates[driver] = given.driver_rate;
         }
         let point = Point { time_s, position_m, speed_m_s, direction };
-        let instant = self.model.balance(
+        let instant = self.model.balance::<DECIDES>(
             point,
             command,
             &given,
@@ -401,7 +403,7 @@ impl<'a> Machine<'a> {
             for ((value, start), before) in y.iter_mut().zip(&self.start).zip(&self.slopes[stage - 1]) {
                 *value = start + lead * before;
             }
-            let instant = self.derive(self.time_s + lead, &y, direction, control, &mut slope);
+            let instant = self.derive::<false>(self.time_s + lead, &y, direction, control, &mut slope);
             self.stage_masses_kg[stage - 1] = instant.effective_mass_kg;
             self.stage_speeds_m_s[stage - 1] = y[SPEED];
             self.stage = y;

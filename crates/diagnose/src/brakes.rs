@@ -93,13 +93,13 @@ fn excess_n(run: &Recorded, said: &Said, sound: &[bool]) -> Option<Vec<f64>> {
     Some(averaged(trace.time_s(), &raw))
 }
 
-/// Mean over [`WINDOW_S`] around each sample that is known, where the window is as full as windows are: at an end, what
-/// is left of it is noisier than the rest.
+/// Mean over [`WINDOW_S`] around each sample that is known, where it has others on both sides: at an end, what is left of the
+/// window is noisier than the rest.
 fn averaged(time_s: &[f64], values: &[f64]) -> Vec<f64> {
-    /// Share of the samples that a window usually holds.
-    const FULL: f64 = 0.7;
+    /// Samples on the one side for each on the other, at most.
+    const LOPSIDED: usize = 2;
     let (mut from, mut to) = (0, 0);
-    let means: Vec<(f64, usize)> = (0..values.len())
+    (0..values.len())
         .map(|index| {
             while time_s[from] < time_s[index] - 0.5 * WINDOW_S {
                 from += 1;
@@ -107,13 +107,14 @@ fn averaged(time_s: &[f64], values: &[f64]) -> Vec<f64> {
             while to < values.len() && time_s[to] <= time_s[index] + 0.5 * WINDOW_S {
                 to += 1;
             }
-            let known = values[from..to].iter().filter(|value| value.is_finite());
-            let (sum, count) = known.fold((0.0, 0usize), |(sum, count), value| (sum + value, count + 1));
-            (if values[index].is_finite() { sum / count.max(1) as f64 } else { f64::NAN }, count)
+            let known =
+                |range: std::ops::Range<usize>| values[range].iter().filter(|value| value.is_finite());
+            let (before, after) = (known(from..index).count(), known(index + 1..to).count());
+            let even = before <= LOPSIDED * after && after <= LOPSIDED * before;
+            let sum: f64 = known(from..to).sum();
+            if values[index].is_finite() && even { sum / (before + after + 1) as f64 } else { f64::NAN }
         })
-        .collect();
-    let most = FULL * means.iter().map(|(_, count)| *count).max().unwrap_or(0) as f64;
-    means.into_iter().map(|(mean, count)| if count as f64 >= most { mean } else { f64::NAN }).collect()
+        .collect()
 }
 
 /// First and last sample of every stretch that is braked.
@@ -182,7 +183,7 @@ mod tests {
         values[5] = f64::NAN;
         values[6] = 5.0;
         let mean = averaged(&time_s, &values);
-        assert!(mean[5].is_nan());
+        assert!(mean[5].is_nan() && mean[0].is_nan() && mean[9].is_nan());
         // 0.3 to 0.7 s hold 1, 1, 1... without the fifth: (1 + 1 + 5 + 1) / 4 around 0.5 s; at 0.7 s 0.5 to 0.9: (5 + 1 + 1 + 1) / 4.
         assert!((mean[7] - 2.0).abs() < 1e-12, "{}", mean[7]);
         assert!((mean[1] - 1.0).abs() < 1e-12);

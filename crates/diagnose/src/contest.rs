@@ -4,6 +4,7 @@ use crate::balance::Kind;
 use crate::catalogue::Form;
 use crate::gram::{Reduced, Whitened};
 use crate::jumps::Jumps;
+use crate::look::MANY_ROWS;
 use crate::noise::{Noise, Noises};
 use crate::profile::{COARSE, Spread};
 use crate::search::rank;
@@ -108,9 +109,13 @@ impl State<'_> {
     /// The functions, each spread as suits best at the noise of a set, and once more at the noise that neighbouring rows
     /// show: what a function leaves out passes for noise, and would let no function follow.
     fn functions(&self, stand: &Stand, taken: &[&str]) -> Vec<(Part, Noises)> {
+        let many = self.system.row_count() > MANY_ROWS;
         let open = self.pool.trials.iter().filter(|trial| {
             let cause = self.cause(trial);
-            cause.is_function() && !taken.contains(&cause.id) && self.apart(trial, &stand.parts)
+            cause.is_function()
+                && !(cause.by_run && many)
+                && !taken.contains(&cause.id)
+                && self.apart(trial, &stand.parts)
         });
         let quiet = self.quiet(stand);
         let starts: Vec<(&Trial, &Noises)> =

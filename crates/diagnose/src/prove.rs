@@ -148,13 +148,20 @@ pub fn text(case: &Case, cured: &Cured, run: usize) -> Option<String> {
     let drive = &case.runs[run];
     if !cured.events.is_empty() {
         let own: Vec<&Event> = cured.events.iter().filter(|event| event.run == run).collect();
-        return (!own.is_empty()).then(|| spelt(cured.cause.id, &own));
+        return (!own.is_empty()).then(|| match (cured.cause.id, cured.values.first()) {
+            ("regeneration_limit", Some((power_w, _))) => {
+                format!("regeneration_limit(power_w: {power_w:?}), {}", spelt("braking", &own))
+            }
+            (id, _) => spelt(id, &own),
+        });
     }
     let Some(function) = cured.function() else {
         return Some(for_run(&cured.cause.written(&cured.values()), &cured.cause, drive));
     };
     if cured.cause.by_run {
-        return Some(cured.cause.constant(function.values[run].0.mean()));
+        // A run that seems to be pulled by less than nothing is pulled by nothing: within its width that is what it can be.
+        let term = &cured.cause.terms[0];
+        return Some(cured.cause.constant(function.values[run].0.mean().clamp(term.low, term.high)));
     }
     let over_position = cured.cause.form == Form::OverPosition;
     let group = if over_position { drive.path } else { run };

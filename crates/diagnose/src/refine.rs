@@ -5,6 +5,7 @@ use crate::events::{Event, LEAST_GAIN, named};
 use crate::gram::Column;
 use crate::profile::Function;
 use crate::recorded::Recorded;
+use crate::regeneration::limit_w;
 use crate::said::{Said, said};
 use crate::search::{Accepted, Found};
 use crate::trial::{Pool, Trial, for_run};
@@ -208,8 +209,15 @@ fn linear(case: &Case, pool: &Pool, found: &Found, widths: &[Widths]) -> Refined
 pub fn spells(case: &Case, system: &System, events: &[Event], refined: &mut Refined) {
     let motion = system.kinds.iter().position(|kind| *kind == crate::Kind::Motion);
     let Some(balance) = motion else { return };
-    let cured = named(&case.runs, events).into_iter().map(|(id, events)| spelt(id, events, balance));
-    refined.causes.extend(cured);
+    for (id, events) in named(&case.runs, events) {
+        let limit = if id == "braking" { limit_w(case, &events) } else { None };
+        let cured = spelt(if limit.is_some() { "regeneration_limit" } else { id }, events, balance);
+        let values = limit.map(|(value, sd)| (value, [value - HALF_95 * sd, value + HALF_95 * sd]));
+        refined.causes.push(match values {
+            Some(value) => Cured { values: vec![value], ..cured },
+            None => cured,
+        });
+    }
 }
 
 /// Spells of one name as a cause.

@@ -8,10 +8,6 @@ use headland_calibrate::statistics::sorted;
 const FEWEST: usize = 3;
 /// Of more runs than this every kind is among those that are fitted, whichever are held out.
 const MANY: usize = 12;
-/// Where a run of a kind that no other is of is held out, its kind cannot be learned.
-const UNLEARNED: f64 = 10.0;
-/// Where none of a kind is held out, it cannot be shown.
-const UNSHOWN: f64 = 1.0;
 /// Runs that lie evenly among the others are held out where nothing else decides.
 const UNEVEN: f64 = 0.1;
 
@@ -93,21 +89,19 @@ fn best(traits: &[Traits], even: &[bool]) -> Vec<bool> {
         .1
 }
 
-/// What a choice of runs that are held out loses.
+/// What a choice of runs that are held out loses: kinds of which none is left to learn from.
 fn loss(traits: &[Traits], held: &[bool], even: &[bool]) -> f64 {
-    let missing = |is: &dyn Fn(&Traits, &Traits) -> bool, side: bool| {
-        let on = |side: bool| traits.iter().zip(held).filter(move |(_, held)| **held == side);
-        on(!side).filter(|(one, _)| !on(side).any(|(other, _)| is(one, other))).count() as f64
+    let on = |side: bool| traits.iter().zip(held).filter(move |(_, held)| **held == side).map(|(one, _)| one);
+    let missing = |alike: &dyn Fn(&Traits, &Traits) -> bool| {
+        on(true).filter(|one| !on(false).any(|other| alike(one, other))).count() as f64
     };
-    let lacks = |side: bool| {
-        2.0 * missing(&|one, other| one.driven == other.driven, side)
-            + missing(&|one, other| one.way.0 == other.way.0, side)
-            + missing(&|one, other| one.way == other.way, side)
-            + missing(&|one, other| one.load == other.load, side)
-    };
+    let unlearned = 2.0 * missing(&|one, other| one.driven == other.driven)
+        + missing(&|one, other| one.way.0 == other.way.0)
+        + missing(&|one, other| one.way == other.way)
+        + missing(&|one, other| one.load == other.load)
+        + missing(&|one, other| one == other);
     let moved = held.iter().zip(even).filter(|(one, other)| one != other).count() as f64;
-    let shown = traits.len().max(1) as f64;
-    UNLEARNED * lacks(false) + UNSHOWN * lacks(true) / shown + UNEVEN * moved / shown
+    unlearned + UNEVEN * moved / traits.len().max(1) as f64
 }
 
 #[cfg(test)]

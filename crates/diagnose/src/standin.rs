@@ -4,6 +4,7 @@
 //! alone; what compares the two is left out there. A run that knows neither is left out.
 
 use crate::DiagnoseError;
+use crate::laid::lay;
 use crate::sparse::{self, Sparse, filled};
 use headland_calibrate::study::StudyError;
 use headland_recording::{RecordedRun, Recording};
@@ -61,6 +62,10 @@ pub fn prepared(recording: &Recording) -> Result<Prepared, DiagnoseError> {
         });
     }
     own.notes.extend(sparse::told(&sparse));
+    own.notes.extend(told(
+        &lay(&mut own.recording.runs)?,
+        "the distance along the path is made of where they were",
+    ));
     own.notes
         .extend(told(&whole, "no speed over ground was recorded; the speed of the wheels stands in for it"));
     own.notes.extend(told(

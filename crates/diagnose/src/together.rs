@@ -2,6 +2,7 @@
 //! the noise that neighbouring rows show, and judged with the noise that they leave.
 
 use crate::catalogue::Cause;
+use crate::look::MANY_ROWS;
 use crate::noise::Noises;
 use crate::search::MOST_CAUSES;
 use crate::state::{Part, Stand, State};
@@ -16,8 +17,12 @@ const LESS: f64 = 0.7;
 type Scored = (f64, Vec<Part>);
 
 impl State<'_> {
-    /// Sets of at least two causes more than `start` has, each with the noise that it leaves.
+    /// Sets of at least two causes more than `start` has, each with the noise that it leaves; none where there are many rows,
+    /// which take long and tell causes one by one.
     pub fn together(&self, start: &Stand, banned: &[&str]) -> Vec<Stand> {
+        if self.system.row_count() > MANY_ROWS {
+            return Vec::new();
+        }
         let noises = self.quiet(start);
         let pairs = noises.each.iter().zip(&start.noises.each);
         if !pairs.into_iter().any(|(quiet, loud)| quiet.sd().powi(2) < LESS * loud.sd().powi(2)) {

@@ -115,13 +115,14 @@ fn beside(
         let Some(stand) = state.settle(&parts, &found.stand.noises) else { continue };
         let more = if within(&stand) { state.with_listed(&stand) } else { None };
         for stand in [more, Some(stand)].into_iter().flatten() {
-            let simpler = state.pieces(&stand) < found.stand.parts.len();
+            let simpler = state.simpler(&stand, &found.stand);
             let more = worth(&stand) - worth(&found.stand);
-            let clearly = more > margin(&found, simpler);
+            let clearly = more > state.margin(&found, simpler);
             let able = !state.impossible(&stand.parts, &stand.estimate)
                 && (clearly || simpler && more > -TOLERANCE)
                 && state.works_widely(&stand)
                 && (simpler || !state.is_listed(&stand))
+                && !state.paraphrases(&stand, &found.stand)
                 && state.sensible(&stand)
                 && state.keeps_to_priors(&stand, &found.stand);
             if able && clearly && better(&stand, &best) {
@@ -149,16 +150,17 @@ fn is_map(law: &Law) -> bool {
     terms.len() > 1 && terms.iter().any(|term| only_x(term))
 }
 
-/// How much better than what was found a set with a law has to be.
-fn margin(found: &Found, simpler: bool) -> f64 {
-    let listed = found.stand.parts.len();
-    let fewer =
-        if listed == 0 { 0.0 } else { 3usize.saturating_sub(listed).max(usize::from(simpler)) as f64 };
-    let share = if simpler { SIMPLER } else { BETTER };
-    MARGIN + share * fewer * (worth(&found.stand) - worth(&found.first)).max(0.0)
-}
-
 impl State<'_> {
+    /// How much better than what was found a set with a law has to be. What differs from run to run has no shape that would
+    /// be known from elsewhere.
+    fn margin(&self, found: &Found, simpler: bool) -> f64 {
+        let shaped = found.stand.parts.iter().filter(|part| !self.cause(&part.trial).by_run).count();
+        let fewer =
+            if shaped == 0 { 0.0 } else { 3usize.saturating_sub(shaped).max(usize::from(simpler)) as f64 };
+        let share = if simpler { SIMPLER } else { BETTER };
+        MARGIN + share * fewer * (worth(&found.stand) - worth(&found.first)).max(0.0)
+    }
+
     /// Whether a set leaves the free parameters where they are known to be, or at least where another has them: a law that
     /// takes the place of what is known says nothing new.
     fn keeps_to_priors(&self, stand: &Stand, other: &Stand) -> bool {
@@ -166,6 +168,13 @@ impl State<'_> {
         const MOST: f64 = 3.5;
         let off = |stand: &Stand, column: usize| stand.estimate.beta[column].abs() / self.pool.sd[column];
         (0..self.pool.nuisance).all(|column| off(stand, column) < MOST.max(off(other, column)))
+    }
+
+    /// Whether a set with a law says in fewer causes what another says. As many as there may be at most are too many: they
+    /// patch what none of them is.
+    fn simpler(&self, stand: &Stand, other: &Stand) -> bool {
+        let (pieces, causes) = (self.pieces(stand), other.parts.len());
+        pieces < causes || pieces == causes && causes == MOST_CAUSES && stand.parts.len() < causes
     }
 
     /// How many causes a set amounts to: every term of a law is one.
@@ -208,6 +217,27 @@ impl State<'_> {
                 reduced.squared_correlation(&law.trial.columns, &trial.columns, &nuisance, &sd) > SAME
             })
         })
+    }
+
+    /// Whether a law of a set says in other words what one or two listed causes say together.
+    fn paraphrases(&self, stand: &Stand, listed: &Stand) -> bool {
+        /// A law of which they leave no more than this is theirs.
+        const THEIRS: f64 = 0.995;
+        /// More of them patch what none of them is.
+        const FEW: usize = 2;
+        let own = |part: &&Part| self.cause(&part.trial).law.is_none();
+        let few = listed.parts.len() <= FEW && listed.parts.iter().all(|part| part.spread.is_none());
+        let columns: Vec<usize> =
+            listed.parts.iter().filter(own).flat_map(|part| part.trial.columns.iter().copied()).collect();
+        if !few || columns.is_empty() {
+            return false;
+        }
+        let Some(reduced) = self.reduced(&stand.noises, &[]) else { return true };
+        let nuisance: Vec<usize> = (0..self.pool.nuisance).collect();
+        let sd = self.sd();
+        let laws = stand.parts.iter().filter(|part| self.cause(&part.trial).law.is_some());
+        laws.into_iter()
+            .any(|law| reduced.squared_correlation(&law.trial.columns, &columns, &nuisance, &sd) > THEIRS)
     }
 
     /// A set with the listed cause beside that makes it likeliest; faults of sensors were looked for before.

@@ -12,6 +12,8 @@ mod channels;
 #[path = "diagnose/hurt.rs"]
 mod hurt;
 mod setting;
+#[path = "diagnose/several.rs"]
+mod several;
 
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{Options, Verdict};

@@ -78,6 +78,12 @@ pub fn spell(id: &str) -> Cause {
             "F = F_b while braking",
             "log the brake switch",
         ),
+        "regeneration_limit" => (
+            "regeneration_limit",
+            "a limit of the power that the drive gives back, beyond which brakes take over",
+            "−F v ≤ P_r, brakes take the rest",
+            "brake at several speeds, as hard as the drive alone can, and log the brake switch",
+        ),
         _ => (
             "drawbar_load",
             "a pull at the hitch that was not recorded",
@@ -85,7 +91,11 @@ pub fn spell(id: &str) -> Cause {
             "repeat without implement or trailer, or log the drawbar force",
         ),
     };
-    let terms = vec![positive("force_n", "N", 1000.0)];
+    let term = match id {
+        "regeneration_limit" => positive("power_w", "W", 10_000.0),
+        _ => positive("force_n", "N", 1000.0),
+    };
+    let terms = vec![term];
     cause(id, &[Kind::Motion], terms, equation, &["time_s"], words, experiment).over(Form::OverTime)
 }
 

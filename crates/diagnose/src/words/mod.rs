@@ -114,12 +114,17 @@ fn values(cured: &Cured, parameters: &[ParameterReport]) -> Values {
         let count = cured.events.len();
         let spells = if count == 1 { "one spell".to_owned() } else { format!("{count} spells") };
         let lasts_s: f64 = cured.events.iter().map(|event| event.to_s - event.from_s).sum();
-        let mean = parameters.first().map_or(0.0, |one| one.value);
-        return Values::Beside(format!(
-            "{spells}, {} in all, {} on average",
-            quantity(lasts_s, "s"),
-            quantity(mean, "N")
-        ));
+        let lasts = quantity(lasts_s, "s");
+        return Values::Beside(match parameters.first() {
+            Some(limit) if limit.unit == "W" => {
+                let limit = with_interval(limit.value, limit.ci95, "W");
+                format!("power {limit}; {spells} of braking, {lasts} in all")
+            }
+            first => {
+                let mean = first.map_or(0.0, |one| one.value);
+                format!("{spells}, {lasts} in all, {} on average", quantity(mean, "N"))
+            }
+        });
     }
     let known: Vec<String> = parameters
         .iter()

@@ -1,0 +1,125 @@
+//! Causes that hide each other, differ from run to run, or are not what they look like; channels of several rates.
+
+use super::setting::{found, found_of_scenario, named, recording_of, recording_of_scenario, scenario};
+use super::{changed, recorded};
+use headland_calibrate::statistics::Draws;
+use headland_diagnose::{Diagnosed, Options, Verdict};
+use headland_recording::Recording;
+
+fn ids(found: &Diagnosed) -> Vec<&str> {
+    found.diagnosis.findings.iter().map(|finding| finding.id.as_str()).collect()
+}
+
+/// What is less while driven and more while coasting: each alone leaves the other, which would pass for noise.
+#[test]
+fn two_causes_that_hide_each_other_are_found_together() {
+    let hidden =
+        "rolling_resistance(coefficient: -0.008), neutral_drag(force_n: 1500.0, viscous_n_s_m: 60.0)";
+    let found = found(&recorded(0.069, hidden), &Options::default()).unwrap();
+    assert!(named(&found, "neutral_drag"), "{}", found.diagnosis.answer);
+    let held = found.diagnosis.fit.held_out.as_ref().unwrap();
+    assert!(held.rmse_after < 3.0 * held.noise && held.rmse_before > 5.0 * held.noise, "{held:?}");
+}
+
+/// The fourth run is the only one with a wet surface, the second a little; nobody said so.
+#[test]
+fn a_resistance_that_differs_from_run_to_run_is_told_as_that() {
+    let (dry, wet) = (recorded(0.069, ""), recorded(0.069, "rolling_resistance(coefficient: 0.02)"));
+    let mut mixed = dry.clone();
+    for run in [1, 3] {
+        mixed.runs[run] = wet.runs[run].clone();
+    }
+    for (run, recorded) in mixed.runs.iter_mut().enumerate() {
+        recorded.path = None;
+        recorded.id = format!("r{run}");
+    }
+    let found = found(&mixed, &Options::default()).unwrap();
+    assert!(named(&found, "rolling_resistance"), "{}", found.diagnosis.answer);
+    let finding = found.diagnosis.findings.iter().find(|one| one.id == "rolling_resistance").unwrap();
+    assert!(finding.sentence.contains("differs from run to run"), "{}", finding.sentence);
+    // More in the wet runs than in the dry ones, by 0.02 of the weight.
+    let along = |run: &str| {
+        let run = found.effects.iter().find(|one| one.id == run).unwrap();
+        let values = run.trace.get("rolling_resistance_n").unwrap();
+        let known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+        known[known.len() / 2]
+    };
+    let expected_n = -0.02 * 13_000.0 * 9.81;
+    assert!((along("r3") - along("r2") - expected_n).abs() < 0.15 * expected_n.abs(), "{}", along("r3"));
+}
+
+/// The force is made of the motor's torque; how much of it comes through the gears is known to a few per cent.
+#[test]
+fn a_gear_that_loses_a_little_more_is_calibrated_and_no_loss_is_claimed() {
+    let with = |efficiency: f64, free: &str| {
+        let text = scenario(0.069, "", "")
+            .replace("gear_ratio: 20,", &format!("gear_ratio: 20, gear_efficiency: {efficiency:?},"));
+        text.replace("    free: [\n", &format!("    free: [\n{free}"))
+    };
+    let noisy = |name: &str, value: f64, draws: &mut Draws| {
+        if name == "speed_m_s" { value + 0.02 * draws.normal() } else { value }
+    };
+    let channels = ["speed_m_s", "position_m", "heading_rad", "motor_torque_n_m", "coasting"];
+    let registry = headland_stock::registry();
+    let recording = recording_of_scenario(&with(0.94, ""), &registry, &channels, (31, &noisy));
+    let free = "        (name: \"vehicle.driveline.gear_efficiency\", sd: 0.03, bounds: (0.8, 1.0)),\n";
+    let found = found_of_scenario(&with(0.97, free), &recording, &Options::default(), &registry).unwrap();
+    assert_eq!(found.diagnosis.verdict, Verdict::None, "{}", found.diagnosis.answer);
+    let gear = found.diagnosis.calibrated.iter().find(|one| one.name == "gear_efficiency").unwrap();
+    assert!(gear.ci95[0] < 0.94 && 0.94 < gear.ci95[1] && gear.ci95[1] - gear.ci95[0] < 0.08, "{gear:?}");
+}
+
+#[test]
+fn a_speed_that_is_held_for_some_samples_hides_nothing() {
+    let held = changed(&recorded(0.069, "neutral_drag(force_n: 1500.0)"), "speed_m_s", |_, trace, index| {
+        trace.get("speed_m_s").unwrap()[index - index % 5]
+    });
+    let found = found(&held, &Options::default()).unwrap();
+    assert!(named(&found, "neutral_drag"), "{}", found.diagnosis.answer);
+}
+
+#[test]
+fn a_force_in_one_row_of_two_is_filled_and_said() {
+    let thin =
+        changed(&recorded(0.069, "neutral_drag(force_n: 1500.0)"), "tractive_force_n", |value, _, index| {
+            if index % 2 == 0 { value } else { f64::NAN }
+        });
+    let found = found(&thin, &Options::default()).unwrap();
+    assert!(named(&found, "neutral_drag"), "{}", found.diagnosis.answer);
+    assert!(
+        found.diagnosis.notes.iter().any(|note| note.contains("one row of 2")),
+        "{:?}",
+        found.diagnosis.notes
+    );
+}
+
+fn noisy_force(effects: &str) -> Recording {
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "tractive_force_n" => value + 60.0 * draws.normal(),
+        _ => value,
+    };
+    let channels = ["speed_m_s", "position_m", "heading_rad", "tractive_force_n"];
+    recording_of((0.069, effects), &headland_stock::registry(), &channels, (41, &noisy))
+}
+
+#[test]
+fn a_force_that_falls_to_nought_now_and_then_is_a_dropout_and_no_brake() {
+    let sound = noisy_force("");
+    let hurt = changed(&sound, "tractive_force_n", |value, trace, index| {
+        let time_s = trace.time_s()[index];
+        if (15.0..15.8).contains(&time_s) || (18.0..18.5).contains(&time_s) { 0.0 } else { value }
+    });
+    let found = found(&hurt, &Options::default()).unwrap();
+    assert_eq!(ids(&found), ["dropout"], "{}", found.diagnosis.answer);
+}
+
+/// Half a second of latency beside a drag: the fault is taken out before the drag is told.
+#[test]
+fn a_late_speed_is_told_beside_a_drag() {
+    let late = changed(&recorded(0.069, "neutral_drag(force_n: 1500.0)"), "speed_m_s", |_, trace, index| {
+        trace.get("speed_m_s").unwrap()[index.saturating_sub(6)]
+    });
+    let found = found(&late, &Options::default()).unwrap();
+    assert!(named(&found, "latency") && named(&found, "neutral_drag"), "{}", found.diagnosis.answer);
+}

@@ -41,19 +41,51 @@ pub fn limit_w(case: &Case, events: &[Event]) -> Option<(f64, f64)> {
             }
         }
     }
+    limit_of(&within, &outside, greatest_w, events.len())
+}
+
+/// The limit of powers that are given back [W] while somebody brakes in so many spells, and at other times, by a drive that
+/// drives with so much at most.
+fn limit_of(within: &[f64], outside: &[f64], greatest_w: f64, spells: usize) -> Option<(f64, f64)> {
     if within.len() < FEWEST || outside.is_empty() {
         return None;
     }
-    let limit_w = median(&within);
+    let limit_w = median(within);
     let deviations: Vec<f64> = within.iter().map(|power| (power - limit_w).abs()).collect();
     let same = deviations.iter().filter(|deviation| **deviation < SAME * limit_w).count() as f64;
-    let beyond = quantile_of_sorted(&sorted(&outside), HARDLY);
+    let beyond = quantile_of_sorted(&sorted(outside), HARDLY);
     let limits = limit_w > NOTHING * greatest_w
         && same >= MOSTLY * within.len() as f64
         && beyond < (1.0 + SAME) * limit_w;
     limits.then(|| {
         // What is known of a median of as many samples as there are spells: within one they are alike.
-        let spells = (events.len() as f64).sqrt();
-        (limit_w, NORMAL_OF_MEDIAN * median(&deviations) / spells)
+        (limit_w, NORMAL_OF_MEDIAN * median(&deviations) / (spells as f64).sqrt())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::limit_of;
+
+    fn powers(of: impl Fn(f64) -> f64) -> Vec<f64> {
+        (0..100).map(|index| of(f64::from(index))).collect()
+    }
+
+    #[test]
+    fn the_same_power_whenever_somebody_brakes_is_a_limit() {
+        let braking = powers(|index| 4200.0 + 40.0 * (7.0 * index).sin());
+        let driving = powers(|index| 4100.0 - 300.0 * index);
+        let (limit_w, sd_w) = limit_of(&braking, &driving, 25_000.0, 9).unwrap();
+        assert!((limit_w - 4200.0).abs() < 20.0 && sd_w < 20.0, "{limit_w} {sd_w}");
+    }
+
+    #[test]
+    fn a_drive_that_gives_back_more_at_other_times_or_another_power_each_time_is_not_limited() {
+        let braking = powers(|_| 4200.0);
+        assert!(limit_of(&braking, &powers(|index| 9000.0 - 300.0 * index), 25_000.0, 9).is_none());
+        assert!(limit_of(&powers(|index| 80.0 * index), &powers(|_| 0.0), 25_000.0, 9).is_none());
+        // In neutral nothing is given back at all.
+        assert!(limit_of(&powers(|_| 0.0), &powers(|_| 0.0), 25_000.0, 9).is_none());
+        assert!(limit_of(&braking[..20], &powers(|_| 0.0), 25_000.0, 9).is_none());
+    }
 }

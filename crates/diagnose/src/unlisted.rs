@@ -133,7 +133,9 @@ fn beside(
         }
     }
     let mut found = found;
-    if let Some(concluded) = best.and_then(|best| concluded(&state, best, &found)) {
+    // A law that the runs do not teach each other leaves what was found as it was.
+    let concluded = best.and_then(|best| concluded(&state, best, &found));
+    if let Some(concluded) = concluded.filter(|concluded| worth(&concluded.stand) > worth(&found.stand)) {
         return Ok(concluded);
     }
     if let Some(other) = as_good {
@@ -155,8 +157,11 @@ impl State<'_> {
     /// be known from elsewhere.
     fn margin(&self, found: &Found, simpler: bool) -> f64 {
         let shaped = found.stand.parts.iter().filter(|part| !self.cause(&part.trial).by_run).count();
-        let fewer =
-            if shaped == 0 { 0.0 } else { 3usize.saturating_sub(shaped).max(usize::from(simpler)) as f64 };
+        let fewer = match (shaped, found.stand.parts.len()) {
+            (0, 0) => 0.0,
+            (0, _) => 1.0,
+            _ => 3usize.saturating_sub(shaped).max(usize::from(simpler)) as f64,
+        };
         let share = if simpler { SIMPLER } else { BETTER };
         MARGIN + share * fewer * (worth(&found.stand) - worth(&found.first)).max(0.0)
     }

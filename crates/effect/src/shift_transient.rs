@@ -1,6 +1,6 @@
 //! Drive force that is lost where the transmission changes its range.
 //!
-//! F = F₀ Σ exp(−½ ((|v| − v_i) / w)²)        while driving
+//! F = F₀ Σ exp(−½ ((|v| − v_i) / w)²)        unless it coasts in neutral, whichever way the drive pulls
 //!
 //! Source: empirical, a bell at each speed of change; Renius, *Fundamentals of Tractor Design* (2020), chapter 5, shows the clutch
 //! energy of range changes.

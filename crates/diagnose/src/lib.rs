@@ -23,6 +23,7 @@ mod error;
 mod events;
 mod experiment;
 mod faults;
+mod foreseen;
 mod gram;
 mod jumps;
 mod laid;
@@ -106,6 +107,7 @@ pub fn diagnose(
     let (system, mut pool, found) = look.closer(&mut case)?;
     let found = unlisted::unlisted(&mut case, &system, &mut pool, found)?;
     let proven = withdraw::proven(&case, &system, &mut pool, found, &events, &faults)?;
+    let proven = foreseen::foreseen(&case, &system, &mut pool, proven, &events, &faults)?;
     let withdraw::Proven { found, mut refined, withheld, proof } = proven;
     let next = experiment::propose(&case, &system, &pool, &found, &refined)?;
     refined.null_space.clone_from(&next.null_space);

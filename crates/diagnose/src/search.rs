@@ -495,10 +495,13 @@ impl State<'_> {
     }
 }
 
-/// Of two that explain as much, a cause in the world is named before a fault of a sensor.
+/// Of two that explain as much, a cause in the world is named before a fault of a sensor, and an offset of an accelerometer
+/// before the tilt that would make it.
 pub fn rank(stand: &Stand, state: &State) -> f64 {
     /// A difference of ln p that is none.
     const NEARLY: f64 = 1.0;
-    let artefact = stand.parts.last().is_some_and(|part| state.cause(&part.trial).class == Class::Artefact);
-    stand.score - if artefact { NEARLY } else { 0.0 }
+    let Some(last) = stand.parts.last() else { return stand.score };
+    let cause = state.cause(&last.trial);
+    let later = f64::from(u8::from(cause.class == Class::Artefact)) + f64::from(u8::from(cause.id == "accelerometer_tilt"));
+    stand.score - NEARLY * later
 }

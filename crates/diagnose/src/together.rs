@@ -1,15 +1,19 @@
 //! Causes that say nothing one by one: what each of them leaves of the others passes for noise. They are grown together at
 //! the noise that neighbouring rows show, and judged with the noise that they leave.
 
-use crate::catalogue::Cause;
+use crate::catalogue::{Cause, Form};
 use crate::look::MANY_ROWS;
 use crate::noise::Noises;
+use crate::profile::COARSE;
 use crate::search::MOST_CAUSES;
 use crate::state::{Part, Stand, State};
+use crate::trial::Trial;
 use rayon::prelude::*;
 
 /// So many sets are grown side by side.
 const BEAM: usize = 6;
+/// And so many beside a function of the path.
+const BEAM_OF_PLACES: usize = 3;
 /// Noise that neighbouring rows show is less than all that is left where its variance is below this share of it.
 const LESS: f64 = 0.7;
 
@@ -28,11 +32,32 @@ impl State<'_> {
         if !pairs.into_iter().any(|(quiet, loud)| quiet.sd().powi(2) < LESS * loud.sd().powi(2)) {
             return Vec::new();
         }
-        let mut open: Vec<Vec<Part>> = vec![start.parts.clone()];
+        let mut all = self.grown_from(start.parts.clone(), &noises, banned, BEAM);
+        for part in self.places(start, &noises, banned) {
+            let parts = start.parts.iter().cloned().chain([part]).collect();
+            all.extend(self.grown_from(parts, &noises, banned, BEAM_OF_PLACES));
+        }
+        let settled = |parts: Vec<Part>| {
+            let stand = self.settle(&parts, &noises)?;
+            (!self.impossible(&stand.parts, &stand.estimate) && self.sensible(&stand)).then_some(stand)
+        };
+        all.into_par_iter().filter_map(settled).collect()
+    }
+
+    /// Sets of at least two causes more than one has that is no function itself, or at least one more beside a function.
+    fn grown_from(
+        &self,
+        start: Vec<Part>,
+        noises: &Noises,
+        banned: &[&str],
+        beam: usize,
+    ) -> Vec<Vec<Part>> {
+        let few = start.len() + usize::from(start.iter().all(|part| part.spread.is_none()));
+        let mut open: Vec<Vec<Part>> = vec![start];
         let mut all: Vec<Vec<Part>> = Vec::new();
         while open.first().is_some_and(|parts| parts.len() < MOST_CAUSES) {
             let mut grown: Vec<Scored> =
-                open.iter().flat_map(|parts| self.one_more(parts, &noises, banned)).collect();
+                open.iter().flat_map(|parts| self.one_more(parts, noises, banned)).collect();
             grown.sort_by(|one, other| other.0.total_cmp(&one.0));
             let mut known: Vec<Vec<&str>> = Vec::new();
             grown.retain(|(_, parts)| {
@@ -42,17 +67,31 @@ impl State<'_> {
                 known.push(ids);
                 new
             });
-            grown.truncate(BEAM);
+            grown.truncate(beam);
             open = grown.into_iter().map(|(_, parts)| parts).collect();
-            if open.first().is_some_and(|parts| parts.len() > start.parts.len() + 1) {
+            if open.first().is_some_and(|parts| parts.len() > few) {
                 all.extend(open.iter().cloned());
             }
         }
-        let settled = |parts: Vec<Part>| {
-            let stand = self.settle(&parts, &noises)?;
-            (!self.impossible(&stand.parts, &stand.estimate) && self.sensible(&stand)).then_some(stand)
+        all
+    }
+
+    /// Functions of the path that runs share: what another cause does to them at each place is as much as noise.
+    fn places(&self, start: &Stand, noises: &Noises, banned: &[&str]) -> Vec<Part> {
+        let free = start.parts.len() + 1 < MOST_CAUSES && self.paths_shared();
+        let trials = self.pool.trials.iter().filter(|trial| {
+            let cause = self.cause(trial);
+            free && cause.form == Form::OverPosition
+                && !banned.contains(&cause.id)
+                && !start.parts.iter().any(|part| self.id(&part.trial) == cause.id)
+                && self.apart(trial, &start.parts)
+        });
+        let part = |trial: &Trial| {
+            let part = Part { trial: trial.clone(), spread: None };
+            let spread = self.best_spread(&part, start, noises, COARSE)?;
+            Some(Part { spread: Some(spread), ..part })
         };
-        all.into_par_iter().filter_map(settled).collect()
+        trials.filter_map(part).collect()
     }
 
     /// A set with one cause more that is no function, the best shape of each cause, at a noise.

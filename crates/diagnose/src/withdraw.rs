@@ -25,7 +25,7 @@ pub struct Proven {
 }
 
 impl Proven {
-    fn of(
+    pub fn of(
         case: &Case,
         system: &System,
         pool: &mut Pool,

@@ -28,6 +28,10 @@ pub struct Around {
     pub drag_area_m2: f64,
     /// Speeds below which 20, 35, 50, 65 and 80 % of the samples lie [m/s].
     pub speeds_m_s: [f64; 5],
+    /// Speeds below which 5 and 98 % of the samples lie [m/s].
+    pub range_m_s: (f64, f64),
+    /// Whether motor and wheels turn at one ratio: there is no variator then, and nothing to shift.
+    pub one_ratio: bool,
     /// Longest run [s].
     pub duration_s: f64,
     /// Channels that every run has.
@@ -143,9 +147,8 @@ fn by_run(around: &Around, pull: Term) -> [Cause; 4] {
     ]
 }
 
-/// So many of the speeds that are driven, in all ways to choose them.
-fn speeds_of(around: &Around, count: usize) -> Vec<Vec<f64>> {
-    let speeds = &around.speeds_m_s;
+/// So many of some speeds, in all ways to choose them.
+fn chosen(speeds: &[f64], count: usize) -> Vec<Vec<f64>> {
     match count {
         1 => speeds.iter().map(|speed| vec![*speed]).collect(),
         _ => (0..speeds.len())
@@ -158,7 +161,7 @@ fn speeds_of(around: &Around, count: usize) -> Vec<Vec<f64>> {
 fn variator_loss(around: &Around, count: usize) -> Cause {
     let mut terms = vec![positive("loss", "1", 0.1)];
     terms.extend(std::iter::repeat_n(shape("node_speed_m_s", "m/s"), count));
-    let nodes = speeds_of(around, count).into_iter();
+    let nodes = chosen(&around.speeds_m_s, count).into_iter();
     let nodes = nodes.map(|speeds| speeds.into_iter().map(|speed| speed.max(0.5)).collect());
     cause(
         "variator_loss",
@@ -174,13 +177,21 @@ fn variator_loss(around: &Around, count: usize) -> Cause {
 
 /// Losses at so many changes of range.
 fn shift_transient(around: &Around, weight_n: f64, count: usize) -> Cause {
-    /// A bell is so wide as a share of its speed.
-    const WIDTH: f64 = 0.05;
+    /// A bell is so wide as a share of its speed: alone, and beside another.
+    const WIDTHS: [&[f64]; 2] = [&[0.03, 0.08], &[0.06]];
+    /// Bells are narrow, so they are looked for all over the range, at so many speeds.
+    const PLACES: [u8; 2] = [16, 8];
     let mut terms = vec![positive("force_n", "N", 0.03 * weight_n), shape("width_m_s", "m/s")];
     terms.extend(std::iter::repeat_n(shape("speed_m_s", "m/s"), count));
-    let bells = speeds_of(around, count).into_iter().map(|speeds| {
-        let width_m_s = WIDTH * speeds[0].max(1.0);
-        std::iter::once(width_m_s).chain(speeds).collect()
+    let alone = usize::from(count > 1);
+    let (from, to) = around.range_m_s;
+    let place = |one: u8| from + (to - from) * (f64::from(one) + 0.5) / f64::from(PLACES[alone]);
+    let speeds: Vec<f64> = (0..PLACES[alone]).map(place).collect();
+    let bells = WIDTHS[alone].iter().flat_map(|width| {
+        chosen(&speeds, count).into_iter().map(move |speeds| {
+            let width_m_s = width * speeds[0].max(1.0);
+            std::iter::once(width_m_s).chain(speeds).collect()
+        })
     });
     cause(
         "shift_transient",
@@ -451,7 +462,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             "a loss in the driveline in proportion to its load",
             "drive at the same speed with two loads",
         ));
-        for count in [1, 2] {
+        for count in if around.one_ratio { 0..0 } else { 1..3 } {
             all.push(variator_loss(around, count));
             all.push(shift_transient(around, weight, count));
         }

@@ -8,6 +8,7 @@ use crate::rows::{Chunk, Row, chunks};
 use crate::said::Said;
 use crate::tails::Tails;
 use crate::voltage::change_v;
+use headland_calibrate::statistics::{NORMAL_OF_MEDIAN, median};
 use nalgebra::DVector;
 use serde::Serialize;
 
@@ -242,6 +243,36 @@ impl System {
     /// The noise that makes what is left of the runs that are `fit` most likely, balance by balance.
     pub fn noises(&self, left: &Column, fit: &[bool]) -> Noises {
         self.noises_like(left, fit, None)
+    }
+
+    /// The noise that neighbouring rows show of what is left of them, by the median of their second differences, where it is
+    /// less than `noises`.
+    pub fn quiet(&self, left: &Column, fit: &[bool], noises: &Noises) -> Noises {
+        /// Rows that share no block lie so far apart.
+        const APART: usize = 2;
+        /// Variance of a second difference over that of a row.
+        const SECOND: f64 = 6.0;
+        let of = |(number, noise): (usize, &Noise)| {
+            let own = self.chunks.iter().zip(left);
+            let own = own.filter(|(chunk, _)| chunk.balance == number && fit[chunk.run]);
+            let differences: Vec<f64> = own
+                .flat_map(|(_, left)| {
+                    let last = left.len().saturating_sub(2 * APART);
+                    (0..last).map(|row| (left[row] - 2.0 * left[row + APART] + left[row + 2 * APART]).abs())
+                })
+                .collect();
+            if differences.is_empty() {
+                return *noise;
+            }
+            let variance = (NORMAL_OF_MEDIAN * median(&differences)).powi(2) / SECOND;
+            if variance > 0.0 && variance < noise.sensor + noise.process {
+                Noise { sensor: variance, process: 0.0, persistence: 0.0, ..*noise }
+            } else {
+                *noise
+            }
+        };
+        let each = noises.each.iter().enumerate().map(of).collect();
+        Noises { each, ..noises.clone() }
     }
 
     /// As [`System::noises`], of the kind that it was before.

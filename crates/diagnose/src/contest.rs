@@ -5,12 +5,11 @@ use crate::catalogue::Form;
 use crate::gram::{Reduced, Whitened};
 use crate::jumps::Jumps;
 use crate::look::MANY_ROWS;
-use crate::noise::{Noise, Noises};
+use crate::noise::Noises;
 use crate::profile::{COARSE, Spread};
 use crate::search::rank;
 use crate::state::{Chosen, Part, Stand, State};
 use crate::trial::Trial;
-use headland_calibrate::statistics::{NORMAL_OF_MEDIAN, median};
 use rayon::prelude::*;
 
 /// A set with one cause more.
@@ -161,33 +160,9 @@ impl State<'_> {
         switched.map(part).collect()
     }
 
-    /// The noise that neighbouring rows show of what a set leaves, by the median of their second differences.
+    /// The noise that neighbouring rows show of what a set leaves.
     pub fn quiet(&self, stand: &Stand) -> Noises {
-        /// Rows that share no block lie so far apart.
-        const APART: usize = 2;
-        /// Variance of a second difference over that of a row.
-        const SECOND: f64 = 6.0;
-        let of = |(number, noise): (usize, &Noise)| {
-            let own = self.system.chunks.iter().zip(&stand.left);
-            let own = own.filter(|(chunk, _)| chunk.balance == number && self.fit[chunk.run]);
-            let differences: Vec<f64> = own
-                .flat_map(|(_, left)| {
-                    let last = left.len().saturating_sub(2 * APART);
-                    (0..last).map(|row| (left[row] - 2.0 * left[row + APART] + left[row + 2 * APART]).abs())
-                })
-                .collect();
-            if differences.is_empty() {
-                return *noise;
-            }
-            let variance = (NORMAL_OF_MEDIAN * median(&differences)).powi(2) / SECOND;
-            if variance > 0.0 && variance < noise.sensor + noise.process {
-                Noise { sensor: variance, process: 0.0, persistence: 0.0, ..*noise }
-            } else {
-                *noise
-            }
-        };
-        let each = stand.noises.each.iter().enumerate().map(of).collect();
-        Noises { each, ..stand.noises.clone() }
+        self.system.quiet(&stand.left, self.fit, &stand.noises)
     }
 
     /// Length and size that make the recordings most likely: the length at the usual size first, then the size.

@@ -54,8 +54,11 @@ const LOOKED_AT: [&str; 6] = [
 
 /// The faults of all runs, and the samples that may be used.
 pub fn faults(drives: &[Recorded]) -> (Vec<Fault>, Vec<Vec<bool>>) {
-    let mut usable: Vec<Vec<bool>> =
-        drives.iter().map(|drive| vec![true; drive.measured.trace.len()]).collect();
+    let known = |drive: &Recorded| match &drive.unknown {
+        unknown if unknown.is_empty() => vec![true; drive.measured.trace.len()],
+        unknown => unknown.iter().map(|unknown| !unknown).collect(),
+    };
+    let mut usable: Vec<Vec<bool>> = drives.iter().map(known).collect();
     let mut all = Vec::new();
     for name in LOOKED_AT {
         if let Some(fault) = stuck(drives, name, &mut usable) {

@@ -69,13 +69,6 @@ impl Noise {
         (self.sensor + self.process).sqrt()
     }
 
-    /// Variance that is not noise of the sensors, over that which is.
-    pub fn lack(&self) -> f64 {
-        /// Beyond this ratio the sensors have no part.
-        const MOST: f64 = 1e4;
-        (self.process / self.sensor.max(f64::MIN_POSITIVE)).min(MOST)
-    }
-
     /// Covariance of so many rows that follow each other.
     pub fn covariance(&self, rows: usize) -> DMatrix<f64> {
         let beside = self.shape.beside();

@@ -101,6 +101,8 @@ const LEAST_EFFECT: f64 = 0.15;
 const LEAST_SHARE: f64 = 0.01;
 /// A squared correlation below which a cause does not stand for another one.
 const UNLIKE: f64 = 0.02;
+/// A formula of this squared correlation with a listed cause is that cause.
+pub const OTHER_WORDS: f64 = 0.97;
 /// Two causes that leave less than this share of the smaller one when they are added cancel each other: neither is there.
 const CANCELLED: f64 = 0.3;
 
@@ -252,8 +254,11 @@ impl State<'_> {
                     reduced.squared_correlation(columns, &part.trial.columns, &nuisance, &self.sd())
                 };
                 let likest = replaced.into_iter().map(|place| (place, like(&place)));
-                // What is like none of them explains something else.
-                let likest = likest.filter(|(_, correlation)| *correlation > UNLIKE);
+                // What is like none of them explains something else, and a formula that is one of them says it in other words.
+                let law = self.cause(&part.trial).law.is_some();
+                let other_words = |correlation: f64| law && correlation > OTHER_WORDS;
+                let likest =
+                    likest.filter(|(_, correlation)| *correlation > UNLIKE && !other_words(*correlation));
                 if let Some((place, correlation)) = likest.max_by(|one, other| one.1.total_cmp(&other.1)) {
                     let gain = found.accepted[place].gain + worth(other) - best;
                     let cause = part.trial.cause;
@@ -495,13 +500,10 @@ impl State<'_> {
     }
 }
 
-/// Of two that explain as much, a cause in the world is named before a fault of a sensor, and an offset of an accelerometer
-/// before the tilt that would make it.
+/// Of two that explain as much, a cause in the world is named before a fault of a sensor.
 pub fn rank(stand: &Stand, state: &State) -> f64 {
     /// A difference of ln p that is none.
     const NEARLY: f64 = 1.0;
-    let Some(last) = stand.parts.last() else { return stand.score };
-    let cause = state.cause(&last.trial);
-    let later = f64::from(u8::from(cause.class == Class::Artefact)) + f64::from(u8::from(cause.id == "accelerometer_tilt"));
-    stand.score - NEARLY * later
+    let artefact = stand.parts.last().is_some_and(|part| state.cause(&part.trial).class == Class::Artefact);
+    stand.score - if artefact { NEARLY } else { 0.0 }
 }

@@ -22,24 +22,44 @@ const REGULAR: f64 = 0.9;
 const LONGEST: usize = 50;
 /// Channels that are on or off, or go around: nothing lies between.
 const SWITCHES: [&str; 4] = ["coasting", "brake", "heading_rad", "wind_direction_rad"];
-/// What surrounds the vehicle and changes slowly.
-const AROUND: [&str; 6] = [
+/// What surrounds the vehicle, or is done with it, and changes slowly: a run is driven by it.
+const AROUND: [&str; 14] = [
     "curvature_per_m",
     "air_temperature_c",
     "oil_temperature_c",
     "heading_rad",
     "wind_speed_m_s",
     "wind_direction_rad",
+    "grade",
+    "payload_kg",
+    "drawbar_force_n",
+    "coasting",
+    "brake",
+    "auxiliary_power_w",
+    "pto_power_w",
+    "hydraulic_power_w",
 ];
-/// A gap of what changes slowly that is bridged [s].
+/// A gap of what changes slowly within which it is known well enough [s].
 const SHORT_S: f64 = 3.0;
 
-/// A run whose sparse channels hold a value in every row between their first and their last one, and which those are.
+/// A run whose channels were filled.
+pub struct Filled {
+    /// The run.
+    pub trace: Trace,
+    /// What was filled.
+    pub sparse: Vec<Sparse>,
+    /// Samples at which it is not known what a run was driven by; empty where there are none. The run goes on there, and
+    /// nothing is told by them.
+    pub unknown: Vec<bool>,
+}
+
+/// A run whose sparse channels hold a value in every row between their first and their last one.
 ///
 /// # Errors
 /// Where a trace cannot be put together.
-pub fn filled(trace: &Trace) -> Result<(Trace, Vec<Sparse>), DiagnoseError> {
+pub fn filled(trace: &Trace) -> Result<Filled, DiagnoseError> {
     let mut found = Vec::new();
+    let mut unknown = vec![false; trace.len()];
     let mut made = Trace::new(trace.time_s().to_vec())?;
     for channel in trace.channels() {
         let known: Vec<usize> =
@@ -51,18 +71,29 @@ pub fn filled(trace: &Trace) -> Result<(Trace, Vec<Sparse>), DiagnoseError> {
             continue;
         }
         let time_s = trace.time_s();
+        let around = AROUND.contains(&channel.name.as_str());
         let near = |from: usize, to: usize| match every {
             Some(every) => to - from <= every + 1,
             None => time_s[to] - time_s[from] <= SHORT_S,
         };
         let switch = SWITCHES.contains(&channel.name.as_str());
-        let values = between(time_s, &channel.values, &known, &near, switch);
+        let mut values = between(time_s, &channel.values, &known, &near, switch);
+        if around {
+            // What is left are gaps that are too long: a run has to be driven by something there.
+            for (unknown, _) in unknown.iter_mut().zip(&values).filter(|(_, value)| !value.is_finite()) {
+                *unknown = true;
+            }
+            values = between(time_s, &values, &known, &|_, _| true, switch);
+        }
         if values.iter().zip(&channel.values).any(|(filled, own)| filled.is_finite() && !own.is_finite()) {
             found.push(Sparse { channel: channel.name.clone(), every });
         }
         made.push(channel.name.clone(), values, Origin::Measured)?;
     }
-    Ok((made, found))
+    if !unknown.contains(&true) {
+        unknown.clear();
+    }
+    Ok(Filled { trace: made, sparse: found, unknown })
 }
 
 /// After how many rows a channel regularly has its next value; none where that is every row, or not regular.
@@ -122,7 +153,8 @@ pub fn told(sparse: &[Sparse]) -> Vec<String> {
                  between."
             ),
             None => format!(
-                "`{channel}` lacks values in {runs}; gaps of up to {SHORT_S} s are taken as what lies between their ends."
+                "`{channel}` lacks values in {runs}; gaps are taken as what lies between their ends, and where they are longer \
+                 than {SHORT_S} s nothing is told by them."
             ),
         }
     };
@@ -141,7 +173,7 @@ mod tests {
 
     #[test]
     fn every_second_value_is_filled_with_what_lies_between_and_told() {
-        let (made, sparse) =
+        let Filled { trace: made, sparse, .. } =
             filled(&with(|row| if row.is_multiple_of(2) { row as f64 } else { f64::NAN })).unwrap();
         let values = made.get("tractive_force_n").unwrap();
         assert!((0..99).all(|row| (values[row] - row as f64).abs() < 1e-9) && values[99] == 98.0);
@@ -152,12 +184,24 @@ mod tests {
     #[test]
     fn a_gap_stays_a_gap() {
         let gap = |row: usize| if (40..60).contains(&row) { f64::NAN } else { 1.0 };
-        let (made, sparse) = filled(&with(gap)).unwrap();
+        let Filled { trace: made, sparse, .. } = filled(&with(gap)).unwrap();
         assert!(sparse.is_empty() && made.get("tractive_force_n").unwrap()[50].is_nan());
         let thin =
             |row: usize| if row.is_multiple_of(2) && !(40..60).contains(&row) { 1.0 } else { f64::NAN };
-        let (made, sparse) = filled(&with(thin)).unwrap();
+        let Filled { trace: made, sparse, .. } = filled(&with(thin)).unwrap();
         let values = made.get("tractive_force_n").unwrap();
         assert!(sparse.len() == 1 && values[50].is_nan() && values[31] == 1.0);
+    }
+
+    #[test]
+    fn what_a_run_is_driven_by_goes_on_through_a_gap_and_tells_nothing_there() {
+        let mut trace = with(|_| 1.0);
+        let gap = |row: i32| (20..30).contains(&row) || (40..80).contains(&row);
+        let grade = (0..100).map(|row| if gap(row) { f64::NAN } else { f64::from(row) }).collect();
+        trace.push("grade", grade, Origin::Measured).unwrap();
+        let filled = filled(&trace).unwrap();
+        assert!((0..100).all(|row| (filled.trace.get("grade").unwrap()[row] - row as f64).abs() < 1e-9));
+        assert!((0..100).all(|row| filled.unknown[row] == (40..80).contains(&row)));
+        assert!(told(&filled.sparse)[0].contains("`grade` lacks values in one run"));
     }
 }

@@ -5,7 +5,7 @@
 
 use crate::DiagnoseError;
 use crate::laid::lay;
-use crate::sparse::{self, Sparse, filled};
+use crate::sparse::{self, Filled, Sparse, filled};
 use headland_calibrate::study::StudyError;
 use headland_recording::{RecordedRun, Recording};
 use headland_trace::{Origin, Trace};
@@ -24,6 +24,8 @@ pub struct Prepared {
     pub recording: Recording,
     /// For each of them the samples whose speed is that of the wheels; empty where it is none.
     pub stands_in: Vec<Vec<bool>>,
+    /// For each of them the samples at which it is not known what it was driven by; empty where there are none.
+    pub unknown: Vec<Vec<bool>>,
     /// What was decided, for people.
     pub notes: Vec<String>,
 }
@@ -33,12 +35,17 @@ pub struct Prepared {
 /// # Errors
 /// [`StudyError::NoSpeed`] where no run has a speed of any kind.
 pub fn prepared(recording: &Recording) -> Result<Prepared, DiagnoseError> {
-    let mut own = Prepared { recording: recording.clone(), stands_in: Vec::new(), notes: Vec::new() };
+    let mut own = Prepared {
+        recording: recording.clone(),
+        stands_in: Vec::new(),
+        unknown: Vec::new(),
+        notes: Vec::new(),
+    };
     let (mut whole, mut partly, mut out): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
     own.recording.runs.clear();
     let mut sparse: Vec<Sparse> = Vec::new();
     for run in &recording.runs {
-        let (trace, channels) = filled(&run.trace)?;
+        let Filled { trace, sparse: channels, unknown } = filled(&run.trace)?;
         sparse.extend(channels);
         let run = &RecordedRun { trace, ..run.clone() };
         let Some(stands_in) = standing_in(&run.trace) else {
@@ -54,6 +61,7 @@ pub fn prepared(recording: &Recording) -> Result<Prepared, DiagnoseError> {
             own.stands_in.push(Vec::new());
         }
         own.recording.runs.push(run);
+        own.unknown.push(unknown);
     }
     if own.recording.runs.is_empty() {
         return Err(match recording.runs.first() {

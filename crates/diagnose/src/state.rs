@@ -64,9 +64,15 @@ pub const WIDER: f64 = 3.0;
 /// with nothing that tells why, is less likely from the start.
 fn choice(cause: &Cause) -> f64 {
     const BY_THE_CLOCK: f64 = 3.0;
+    /// No recording tells a tilt from the offset that it makes, which is the plainer thing to say.
+    const TILT: f64 = 1.0;
     let clock = cause.terms.iter().any(|term| term.name == "from_s");
     let found = cause.law.as_ref().map_or(0.0, |law| law.cost);
-    found + (cause.shapes.len().max(1) as f64).ln() + if clock { BY_THE_CLOCK } else { 0.0 }
+    let tilt = cause.id == "accelerometer_tilt";
+    found
+        + (cause.shapes.len().max(1) as f64).ln()
+        + if clock { BY_THE_CLOCK } else { 0.0 }
+        + if tilt { TILT } else { 0.0 }
 }
 
 impl<'a> State<'a> {

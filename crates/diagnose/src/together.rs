@@ -45,13 +45,7 @@ impl State<'_> {
     }
 
     /// Sets of at least two causes more than one has that is no function itself, or at least one more beside a function.
-    fn grown_from(
-        &self,
-        start: Vec<Part>,
-        noises: &Noises,
-        banned: &[&str],
-        beam: usize,
-    ) -> Vec<Vec<Part>> {
+    fn grown_from(&self, start: Vec<Part>, noises: &Noises, banned: &[&str], beam: usize) -> Vec<Vec<Part>> {
         let few = start.len() + usize::from(start.iter().all(|part| part.spread.is_none()));
         let mut open: Vec<Vec<Part>> = vec![start];
         let mut all: Vec<Vec<Part>> = Vec::new();

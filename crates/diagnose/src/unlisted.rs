@@ -8,7 +8,7 @@ use crate::gram::Column;
 use crate::look::MANY_ROWS;
 use crate::losses::SPEED_SQUARED;
 use crate::noise::{Noises, Whiteners};
-use crate::search::{Found, MOST_CAUSES, TOLERANCE, concluded, worth};
+use crate::search::{Found, MOST_CAUSES, OTHER_WORDS, TOLERANCE, concluded, worth};
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Trial, effect};
 use crate::{Case, DiagnoseError, System};
@@ -79,6 +79,9 @@ fn beside(
         let Some(mut law) = law(case, system, pool, &start, &found.stand.noises, sought)? else {
             continue;
         };
+        if start.is_empty() && rows <= MANY_ROWS {
+            candidates.extend(with_less(case, system, pool, &law, sought));
+        }
         if is_map(&law) {
             continue;
         }
@@ -109,8 +112,14 @@ fn beside(
     };
     let mut best: Option<Stand> = None;
     let mut as_good: Option<Stand> = None;
-    let better =
-        |stand: &Stand, than: &Option<Stand>| than.as_ref().is_none_or(|than| worth(stand) > worth(than));
+    // What is known is likelier from the start than a term of a formula that says as much.
+    let listed_of = |state: &State, stand: &Stand| -> Vec<Part> {
+        stand.parts.iter().filter(|part| state.cause(&part.trial).law.is_none()).cloned().collect()
+    };
+    let good = |state: &State, stand: &Stand| worth(stand) + TOLERANCE * listed_of(state, stand).len() as f64;
+    let better = |stand: &Stand, than: &Option<Stand>| {
+        than.as_ref().is_none_or(|than| good(&state, stand) > good(&state, than))
+    };
     for parts in candidates {
         let Some(stand) = state.settle(&parts, &found.stand.noises) else { continue };
         let more = if within(&stand) { state.with_listed(&stand) } else { None };
@@ -132,6 +141,24 @@ fn beside(
             }
         }
     }
+    // A law that was found by itself has what stood in for the listed causes beside it: it is looked for once more beside them.
+    if let Some(stand) = best.clone() {
+        let listed = listed_of(&state, &stand);
+        if !listed.is_empty()
+            && rows <= MANY_ROWS
+            && let Some(law) = law(case, system, pool, &listed, &stand.noises, sought)?
+            && !is_map(&law)
+        {
+            let part = add(case, system, pool, &law, sought);
+            let state = State { case, system, pool, fit: &case.fit };
+            let parts: Vec<Part> = listed.into_iter().chain([part]).collect();
+            best = state
+                .settle(&parts, &stand.noises)
+                .filter(|other| good(&state, other) > good(&state, &stand) && state.sensible(other))
+                .or(Some(stand));
+        }
+    }
+    let state = State { case, system, pool, fit: &case.fit };
     let mut found = found;
     // A law that the runs do not teach each other leaves what was found as it was.
     let concluded = best.and_then(|best| concluded(&state, best, &found));
@@ -207,8 +234,6 @@ impl State<'_> {
 
     /// Whether a law of a set says the same as a listed cause in other words.
     fn is_listed(&self, stand: &Stand) -> bool {
-        /// Two causes of this squared correlation are one to the data.
-        const SAME: f64 = 0.97;
         let Some(reduced) = self.reduced(&stand.noises, &[]) else { return true };
         let nuisance: Vec<usize> = (0..self.pool.nuisance).collect();
         let sd = self.sd();
@@ -219,7 +244,7 @@ impl State<'_> {
                 cause.law.is_none() && !cause.is_function()
             });
             listed.into_iter().any(|trial| {
-                reduced.squared_correlation(&law.trial.columns, &trial.columns, &nuisance, &sd) > SAME
+                reduced.squared_correlation(&law.trial.columns, &trial.columns, &nuisance, &sd) > OTHER_WORDS
             })
         })
     }
@@ -252,6 +277,26 @@ impl State<'_> {
         let faults: Vec<&str> = faults.map(|cause| cause.id).collect();
         self.contest(stand, &reduced, &faults).into_iter().next().map(|one| one.stand)
     }
+}
+
+/// A law without one of its terms, each in turn, and each term by itself: what was left out may be a listed cause that the
+/// formula says in other words.
+fn with_less(case: &mut Case, system: &System, pool: &mut Pool, law: &Law, sought: Sought) -> Vec<Vec<Part>> {
+    let terms: Vec<Part> = law
+        .each
+        .iter()
+        .map(|term| if is_map(term) { None } else { Some(add(case, system, pool, term, sought)) })
+        .collect::<Option<_>>()
+        .unwrap_or_default();
+    let mut all: Vec<Vec<Part>> = terms.iter().map(|term| vec![term.clone()]).collect();
+    if terms.len() > 2 {
+        all.extend((0..terms.len()).map(|gone| {
+            let mut others = terms.clone();
+            others.remove(gone);
+            others
+        }));
+    }
+    all
 }
 
 /// The regressor of a law.
@@ -460,8 +505,11 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
         "x" => BLOCKS * block_s * median(&speeds).abs(),
         _ => 0.0,
     };
-    let offered: [Offered; 7] = [
+    let force = kind == Kind::Motion;
+    let acceleration = of(&|run| run.motion.slope.clone()).filter(|_| !force);
+    let offered: [Offered; 8] = [
         ("v", "m/s", of(&|run| run.motion.value.clone())),
+        ("acceleration", "m/s²", acceleration),
         ("x", "m", of(&|run| run.position_m.clone())),
         ("t", "s", of(&|run| run.measured.trace.time_s().to_vec())),
         ("heading", "rad", channel("heading_rad")),

@@ -45,6 +45,9 @@ pub struct Expression {
     shaft_power: Option<String>,
     #[serde(default)]
     constants: Constants,
+    /// Whether a power names the acceleration.
+    #[serde(skip)]
+    follows: bool,
     #[serde(skip)]
     resistance_n: Option<Program>,
     #[serde(skip)]
@@ -60,12 +63,12 @@ impl Plugin for Expression {
         name: "expression",
         about: "a force or a power as a formula of the situation",
         equation: "R, F, P = + - * / ^ < <= > >= == != ( ) min max clamp abs sign sqrt pow exp ln log10 sin cos tanh of \
-                   v [m/s] x [m] t [s] heading [rad] kappa [1/m] slope [1] elevation [m] temperature [°C] m [kg] \
+                   v [m/s] acceleration [m/s²] x [m] t [s] heading [rad] kappa [1/m] slope [1] elevation [m] temperature [°C] m [kg] \
                    g [m/s²] N [N] rho [kg/m³] area [m²] coasting [1] braking [1] headwind [m/s] crosswind [m/s] and \
                    constants",
         source: "the author of the scenario; empirical",
         validity: "units have to fit; comparisons are 1 or 0; slope is the sine, N = m g cos θ the normal load, the cross \
-                   wind comes from the right; a force that is not finite stops the simulation, \
+                   wind comes from the right; powers alone may name the acceleration, which forces make; a force that is not finite stops the simulation, \
                    such a power leaves the drive without any",
         parameters: &[
             parameter(
@@ -107,6 +110,17 @@ impl Plugin for Expression {
                 let found = format!("\"{}\" in {}", Fault::quote(text, 0..text.len()), compiled.dimension);
                 return Err(refuse(name, &found, &format!("a formula in {unit}")));
             }
+            if let Some(named) = compiled.acceleration {
+                if unit != "W" {
+                    let found = format!("`{}` in a force", Fault::quote(text, named));
+                    return Err(refuse(
+                        name,
+                        &found,
+                        "a formula of what makes the acceleration; powers may name it",
+                    ));
+                }
+                self.follows = true;
+            }
             for (used, uses) in used.iter_mut().zip(compiled.uses) {
                 *used |= uses;
             }
@@ -127,6 +141,10 @@ impl Plugin for Expression {
 }
 
 impl Effect for Expression {
+    fn follows_acceleration(&self) -> bool {
+        self.follows
+    }
+
     fn act(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Action {
         let value = |program: &Option<Program>| program.as_ref().map_or(0.0, |program| program.value(at));
         Action {

@@ -44,6 +44,12 @@ pub trait Effect: Debug + Send + Sync {
     /// an effect adds must not depend on them. The force at the wheels is not known yet.
     fn act(&self, at: &Situation, states: &[f64], rates: &mut [f64]) -> Action;
 
+    /// Whether its powers hang on `at.acceleration_m_s2`: it is asked once more then, when forces have made it. Its forces
+    /// must not hang on it.
+    fn follows_acceleration(&self) -> bool {
+        false
+    }
+
     /// Least and greatest force at the wheels [N] that it allows the driveline. A recorded force is beyond its reach, and
     /// so is the force that drove a recorded motion; of that, what it does not allow in braking is left to the brakes.
     fn limits_n(&self, at: &Situation, states: &[f64]) -> (f64, f64) {

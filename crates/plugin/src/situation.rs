@@ -26,6 +26,8 @@ pub struct Situation {
     pub reversed: bool,
     /// Speed over ground [m/s].
     pub speed_m_s: f64,
+    /// Acceleration along the motion [m/s²], for powers that follow it; 0 while forces are asked for, which make it.
+    pub acceleration_m_s2: f64,
     /// Mass that rests on the wheels [kg].
     pub mass_kg: f64,
     /// Acceleration of gravity [m/s²].

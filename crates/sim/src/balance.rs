@@ -220,8 +220,42 @@ impl Model {
         powers: &mut [f64],
         scratch: &mut Scratch,
     ) -> Instant {
+        let mut acceleration_m_s2 = 0.0;
+        if self.effects.iter().any(|effect| effect.plugin.follows_acceleration()) {
+            let at = (point, command, given);
+            let first = self.balance_at::<false>(
+                at,
+                acceleration_m_s2,
+                layout,
+                slots,
+                states,
+                rates,
+                powers,
+                scratch,
+            );
+            acceleration_m_s2 = first.acceleration_m_s2;
+        }
+        let at = (point, command, given);
+        self.balance_at::<DECIDES>(at, acceleration_m_s2, layout, slots, states, rates, powers, scratch)
+    }
+
+    /// As [`Model::balance`], with what effects are told of the acceleration.
+    #[allow(clippy::too_many_arguments, reason = "as in the balance")]
+    #[inline(always)]
+    fn balance_at<const DECIDES: bool>(
+        &self,
+        (point, command, given): (Point, Command, &Given),
+        acceleration_m_s2: f64,
+        layout: &Layout,
+        slots: &Slots,
+        states: &[f64],
+        rates: &mut [f64],
+        powers: &mut [f64],
+        scratch: &mut Scratch,
+    ) -> Instant {
         let Point { speed_m_s, direction, .. } = point;
         let mut situation = self.situation(point, command, given);
+        situation.acceleration_m_s2 = acceleration_m_s2;
         let sums = self.sums(&mut situation, given, layout, states, rates, scratch);
         let place = situation.place;
 
@@ -318,6 +352,7 @@ impl Model {
             position_m,
             reversed: given.reversed_from_m.is_some(),
             speed_m_s: point.speed_m_s,
+            acceleration_m_s2: 0.0,
             mass_kg: self.vehicle.mass_kg,
             gravity_m_s2: self.gravity_m_s2,
             place,

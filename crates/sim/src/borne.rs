@@ -179,6 +179,7 @@ impl Model {
     ) -> (Instant, Borne) {
         let mut situation = self.situation(point, command, given);
         situation.place = motion.place;
+        situation.acceleration_m_s2 = motion.acceleration_m_s2.unwrap_or(0.0);
         let sums = self.sums(&mut situation, given, layout, states, rates, scratch);
         let weight_n = situation.mass_kg * self.gravity_m_s2;
         let air_n = self.air_n(&situation);

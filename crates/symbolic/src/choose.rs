@@ -6,6 +6,7 @@ use crate::polish::Polished;
 use crate::problem::Bench;
 use crate::search::{Searched, Stop};
 use crate::validate::{Judge, Verdict};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 /// Everything that was found.
@@ -116,10 +117,32 @@ fn difference(one: &Judged, best: &Judged) -> (f64, f64) {
 fn told(bench: &Bench, one: &Judged, nothing: &Judged, best: &Judged, variance: f64) -> Law {
     let runs = bench.fitted.len() + bench.unseen.len();
     let runs = bench.variables.first().map_or(runs, |variable| variable.runs.len());
-    let written = write(bench, &one.law, &(&one.verdict.covariance * variance), runs);
+    let covariance = &one.verdict.covariance * variance;
+    let written = write(bench, &one.law, &covariance, runs);
     let (beyond, sd) = difference(one, best);
     let sum = |of: &Judged| of.verdict.folds.iter().map(|(error, _)| error).sum::<f64>();
     let unseen = one.verdict.unseen.zip(nothing.verdict.unseen);
+    let alone = |(law, covariance): (Polished, DMatrix<f64>)| {
+        let written = write(bench, &law, &covariance, runs);
+        let (gain, complexity) = (0.0, law.complexity());
+        let none = f64::NAN;
+        Law {
+            text: written.text,
+            constants: written.constants,
+            terms: 1,
+            complexity,
+            gain,
+            error: none,
+            error_beyond_best: none,
+            error_beyond_best_sd: none,
+            explained: none,
+            unseen: None,
+            prediction: written.prediction,
+            each: Vec::new(),
+        }
+    };
+    let several = one.law.terms.len() > 1;
+    let each = if several { one.law.each(&covariance).into_iter().map(alone).collect() } else { Vec::new() };
     Law {
         text: written.text,
         constants: written.constants,
@@ -132,5 +155,6 @@ fn told(bench: &Bench, one: &Judged, nothing: &Judged, best: &Judged, variance: 
         explained: 1.0 - sum(one) / sum(nothing).max(f64::MIN_POSITIVE),
         unseen: unseen.map(|(one, nothing)| 1.0 - one / nothing.max(f64::MIN_POSITIVE)),
         prediction: written.prediction,
+        each,
     }
 }

@@ -181,6 +181,7 @@ mod tests {
                 time_s: 0.5 * k,
                 position_m: 3.0 * k - 20.0,
                 speed_m_s: 5.0 + 4.0 * (0.3 * k).sin(),
+                acceleration_m_s2: (0.13 * k).cos(),
                 mass_kg: 12_000.0 + 10.0 * k,
                 gravity_m_s2: 9.8 + 1e-4 * k,
                 place: Place {
@@ -209,6 +210,7 @@ mod tests {
         let wind = at.air.wind_from_rad - at.place.heading_rad;
         match name {
             "v" => at.speed_m_s,
+            "acceleration" => at.acceleration_m_s2,
             "x" => at.position_m,
             "t" => at.time_s,
             "heading" => at.place.heading_rad,
@@ -241,6 +243,7 @@ mod tests {
             explained: 0.0,
             unseen: None,
             prediction: law.prediction,
+            each: Vec::new(),
         }
     }
 
@@ -259,7 +262,7 @@ mod tests {
         let residual = vec![vec![0.0; situations.len()]];
         let problem = Problem {
             variables: &variables,
-            target: Target::Force,
+            target: Target::Power,
             rows: &AsTheyAre,
             residual: &residual,
             nuisances: &[],
@@ -283,11 +286,12 @@ mod tests {
             let count = amplitudes.len() + term.free().len();
             let law = Polished { terms: vec![term], amplitudes, ..Polished::nothing(&bench) };
             let law = told(write(&bench, &law, &DMatrix::identity(count, count), 1));
-            let parameters = format!("(resistance: \"{}\", constants: {})", law.text, law.constants_text());
+            let parameters =
+                format!("(auxiliary_power: \"{}\", constants: {})", law.text, law.constants_text());
             let effect = registry.effects.build("expression", &parameters, std::path::Path::new("."));
             let effect = effect.unwrap_or_else(|error| panic!("{parameters}: {error}"));
             for (at, told) in situations.iter().zip(&law.prediction[0]) {
-                let found = effect.act(at, &[], &mut []).resistance_n;
+                let found = effect.act(at, &[], &mut []).auxiliary_power_w;
                 assert!((found - told).abs() <= 1e-9 * told.abs().max(1.0), "{parameters}: {found}, {told}");
             }
         }

@@ -45,6 +45,8 @@ pub struct Law {
     pub unseen: Option<f64>,
     /// What it says, sample by sample, of every run [N or W].
     pub prediction: Vec<Vec<f64>>,
+    /// Its terms by themselves, each a law with the numbers that it has here, where there are several.
+    pub each: Vec<Law>,
 }
 
 impl Law {

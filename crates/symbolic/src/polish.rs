@@ -52,6 +52,23 @@ impl Polished {
         self.amplitudes.len() + places(&self.terms).len()
     }
 
+    /// Its terms by themselves, each with its part of the covariance of amplitudes, then inner constants.
+    pub fn each(&self, covariance: &DMatrix<f64>) -> Vec<(Self, DMatrix<f64>)> {
+        let (mut amplitude, mut inner) = (0, self.amplitudes.len());
+        let of = |term: &Term| {
+            let free: usize = term.factors.iter().map(|factor| factor.shape.free().len()).sum();
+            let own: Vec<usize> = (amplitude..amplitude + term.width()).chain(inner..inner + free).collect();
+            let law = Self {
+                terms: vec![term.clone()],
+                amplitudes: self.amplitudes[amplitude..amplitude + term.width()].to_vec(),
+                ..self.clone()
+            };
+            (amplitude, inner) = (amplitude + term.width(), inner + free);
+            (law, DMatrix::from_fn(own.len(), own.len(), |row, column| covariance[(own[row], own[column])]))
+        };
+        self.terms.iter().map(of).collect()
+    }
+
     /// Derivatives of its rows by its inner constants, as they are.
     pub fn slopes(&self, bench: &Bench) -> Vec<Vec<f64>> {
         let of = |place: &Place| slope(bench, &self.terms, &self.amplitudes, *place);

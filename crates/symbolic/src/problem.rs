@@ -104,7 +104,7 @@ pub(crate) struct Bench<'a> {
 
 impl<'a> Bench<'a> {
     pub fn new(problem: &Problem<'a>) -> Result<Self, SymbolicError> {
-        let variables = check(problem.variables, problem.fit)?;
+        let variables = check(problem.variables, problem.fit, problem.target)?;
         let runs = problem.residual.len();
         for variable in problem.variables {
             length(&format!("`{}`", variable.name), runs, variable.runs.len(), runs)?;

@@ -1,9 +1,10 @@
 //! What may stand in a law, and in which unit.
 //!
 //! The names are those that the effect `expression` knows, and no others: what is made of the target itself (a measured
-//! force, an acceleration) would reproduce the residual as an identity and is refused by its name.
+//! force; an acceleration, where a force is sought) would reproduce the residual as an identity and is refused by its name.
 
 use crate::SymbolicError;
+use crate::problem::Target;
 use headland_units::parse_unit;
 
 /// A quantity that may stand in a law, sample by sample.
@@ -55,9 +56,14 @@ const fn known(name: &'static str, unit: &'static str, ending: &'static str, kin
     Known { name, unit, value_ending: ending, scale_ending: ending, kind }
 }
 
+/// What forces make: it may stand in the law of a power and in none of a force, where it would reproduce the residual as an
+/// identity.
+pub(crate) const ACCELERATION: &str = "acceleration";
+
 /// Everything that may stand in a law.
-pub(crate) const KNOWN: [Known; 17] = [
+pub(crate) const KNOWN: [Known; 18] = [
     known("v", "m/s", "_m_s", Kind::Size),
+    known(ACCELERATION, "m/s²", "_m_s2", Kind::Signed),
     known("x", "m", "_m", Kind::Coordinate),
     known("t", "s", "_s", Kind::Coordinate),
     known("heading", "rad", "_rad", Kind::Angle),
@@ -121,15 +127,20 @@ impl Checked<'_> {
 }
 
 /// Checks names, units and values; variables that never change are left out, a constant has their place.
-pub(crate) fn check<'a>(variables: &'a [Variable], fit: &[bool]) -> Result<Vec<Checked<'a>>, SymbolicError> {
+pub(crate) fn check<'a>(
+    variables: &'a [Variable],
+    fit: &[bool],
+    target: Target,
+) -> Result<Vec<Checked<'a>>, SymbolicError> {
+    let allowed = |known: &&Known| target == Target::Power || known.name != ACCELERATION;
     /// A smaller share of the greatest value is rounding.
     const LEAST_SPREAD: f64 = 1e-9;
     let mut all: Vec<Checked<'a>> = Vec::new();
     let mut names: Vec<&str> = Vec::new();
     for variable in variables {
         let name = variable.name.as_str();
-        let Some(known) = KNOWN.iter().find(|known| known.name == name) else {
-            let known = KNOWN.iter().map(|known| known.name).collect();
+        let Some(known) = KNOWN.iter().filter(allowed).find(|known| known.name == name) else {
+            let known = KNOWN.iter().filter(allowed).map(|known| known.name).collect();
             return Err(SymbolicError::Unknown { name: name.to_owned(), known });
         };
         if names.contains(&name) {
@@ -206,7 +217,7 @@ mod tests {
     #[test]
     fn what_is_made_of_the_target_is_refused() {
         for name in ["a", "force", "dv_dt", "tractive_force_n", "acceleration"] {
-            let error = check(&[variable(name, "N")], &[true]).unwrap_err();
+            let error = check(&[variable(name, "N")], &[true], Target::Force).unwrap_err();
             assert!(matches!(error, SymbolicError::Unknown { .. }), "{error}");
         }
     }
@@ -214,17 +225,17 @@ mod tests {
     #[test]
     fn a_unit_that_does_not_fit_is_refused() {
         for (name, unit) in [("v", "kg"), ("v", "km/h"), ("x", "s"), ("temperature", "K"), ("t", "furlong")] {
-            let error = check(&[variable(name, unit)], &[true]).unwrap_err();
+            let error = check(&[variable(name, unit)], &[true], Target::Force).unwrap_err();
             assert!(matches!(error, SymbolicError::Unit { .. }), "{error}");
         }
-        assert!(check(&[variable("v", "m/s"), variable("v", "m/s")], &[true]).is_err());
+        assert!(check(&[variable("v", "m/s"), variable("v", "m/s")], &[true], Target::Force).is_err());
     }
 
     #[test]
     fn what_never_changes_is_left_out() {
         let still = Variable { runs: vec![vec![4.0; 3]], ..variable("m", "kg") };
         let all = [still, variable("v", "m/s")];
-        let checked = check(&all, &[true]).unwrap();
+        let checked = check(&all, &[true], Target::Force).unwrap();
         assert_eq!(checked.len(), 1);
         assert!((checked[0].round_size() - 2.0).abs() < 1e-12 && checked[0].step > 0.0);
     }

@@ -3,8 +3,9 @@
 use crate::balance::Kind;
 
 /// Channels that the variables of a formula are read from.
-pub const CHANNELS: [(&str, &str); 7] = [
+pub const CHANNELS: [(&str, &str); 8] = [
     ("v", "speed_m_s"),
+    ("acceleration", "acceleration_m_s2"),
     ("x", "position_m"),
     ("t", "time_s"),
     ("heading", "heading_rad"),

@@ -128,6 +128,7 @@ pub fn drafted(
         pass: base.pass,
         force_n: None,
         stands_in: Vec::new(),
+        unknown: Vec::new(),
         engine_w,
         pull_n: None,
         charge_j: base.charge_j,

@@ -43,7 +43,7 @@ pub fn report(
         findings.extend(beside.faults.iter().map(|fault| faulty(fault, system)));
     }
     let verdict = if beside.withheld.is_some() { Verdict::CannotTell } else { verdict(&findings) };
-    let fit = fit(case, Some(found), proof);
+    let fit = fit(case, system, Some(found), proof);
     notes.extend(remarks(case, &found.unproven));
     let mut null_space = refined.null_space.clone();
     for finding in &findings {
@@ -134,7 +134,7 @@ pub fn inconclusive(
         mismatch: Vec::new(),
         mismatch_left: Vec::new(),
         findings: Vec::new(),
-        fit: fit(case, None, &proof),
+        fit: fit(case, system, None, &proof),
         calibrated: Vec::new(),
         null_space: statements.to_vec(),
         experiments: Vec::new(),
@@ -158,7 +158,7 @@ fn ids(case: &Case, wanted: bool) -> Vec<String> {
     chosen.map(|(drive, _)| drive.measured.id.clone()).collect()
 }
 
-fn fit(case: &Case, found: Option<&Found>, proof: &Proof) -> Fit {
+fn fit(case: &Case, system: &System, found: Option<&Found>, proof: &Proof) -> Fit {
     let runs = |wanted: bool, errors: &Errors| FitRuns {
         runs: ids(case, wanted),
         rmse_before: errors.before,
@@ -168,12 +168,13 @@ fn fit(case: &Case, found: Option<&Found>, proof: &Proof) -> Fit {
     let lack = match (&proof.held_out, proof.noise) {
         (Some(held), noise) if noise > 0.0 => held.after / noise,
         (None, noise) if noise > 0.0 => proof.fitted.after / noise,
-        // Without a noise of its own the signal is judged by the rows: all of their scatter over the sensors' part.
-        _ => found
-            .iter()
-            .flat_map(|found| &found.noises.1.each)
-            .map(|noise| (1.0 + noise.lack()).sqrt())
-            .fold(0.0, f64::max),
+        // Without a noise of its own the signal is judged by the rows: all of their scatter over that of neighbours.
+        _ => found.map_or(f64::NAN, |found| {
+            let stand = &found.stand;
+            let quiet = system.quiet(&stand.left, &case.fit, &stand.noises);
+            let each = stand.noises.each.iter().zip(&quiet.each);
+            each.map(|(all, quiet)| all.sd() / quiet.sd()).fold(0.0, f64::max)
+        }),
     };
     Fit {
         signal: proof.signal.to_owned(),

@@ -157,13 +157,17 @@ fn left_over(told: &Told) -> Option<String> {
     /// Error at the end over the noise from which on something is left to explain.
     const MUCH: f64 = 2.0;
     let lack = told.fit.lack_of_fit;
+    let noise = if told.fit.fitted.noise.is_finite() {
+        "the noise of the sensor"
+    } else {
+        "what neighbouring stretches differ by"
+    };
     let much = (lack.is_finite() && lack > MUCH).then(|| {
         if told.verdict == Verdict::None {
-            format!("What is left is {lack:.1} times the noise of the sensor, without a pattern that stands out.")
+            format!("What is left is {lack:.1} times {noise}, without a pattern that stands out.")
         } else {
             format!(
-                "What is left is {lack:.1} times the noise of the sensor: there is more to it than was found, or the \
-                 noise is larger."
+                "What is left is {lack:.1} times {noise}: there is more to it than was found, or the noise is larger."
             )
         }
     });

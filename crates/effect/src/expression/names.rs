@@ -15,9 +15,13 @@ const fn variable(name: &'static str, unit: &'static str, of: fn(&Situation) -> 
     Variable { name, unit, of }
 }
 
+/// The one that only a power may name: a force makes it.
+pub(super) const ACCELERATION: &str = "acceleration";
+
 /// Every variable. Signs are those of [`Situation`]; the cross wind counts from the right.
-pub(super) const VARIABLES: [Variable; 17] = [
+pub(super) const VARIABLES: [Variable; 18] = [
     variable("v", "m/s", |at| at.speed_m_s),
+    variable(ACCELERATION, "m/s²", |at| at.acceleration_m_s2),
     variable("x", "m", |at| at.position_m),
     variable("t", "s", |at| at.time_s),
     variable("heading", "rad", |at| at.place.heading_rad),

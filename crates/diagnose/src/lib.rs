@@ -33,6 +33,7 @@ mod losses;
 mod map;
 mod noise;
 mod own;
+mod places;
 mod profile;
 mod prove;
 mod recorded;

@@ -5,6 +5,7 @@ use crate::balance::{Kind, System, block_s};
 use crate::events::{self, Event, Spot, Stretches};
 use crate::gram::Column;
 use crate::look::{Look, MANY_ROWS};
+use crate::places::of_places;
 use crate::search::{Accepted, Found, search_without, worth};
 use crate::state::{Stand, State};
 use crate::{Case, DiagnoseError, unlisted};
@@ -23,7 +24,7 @@ pub fn spells(
     let named = events::named(&case.runs, &events).into_iter();
     let mut events: Vec<Event> =
         named.filter(|(id, _)| case.wanted(id)).flat_map(|(_, events)| events).collect();
-    if events.is_empty() {
+    if events.is_empty() || of_places(case, &events) {
         return Ok(braked.to_vec());
     }
     let usable = outside(case, sound, &events);

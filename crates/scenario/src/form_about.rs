@@ -182,6 +182,7 @@ pub const ABOUT: &[(&str, &str, &str)] = &[
     ("scenario", "replay.inputs.AirTemperature", "of the air"),
     ("scenario", "replay.inputs.AuxiliaryPower", "of other consumers"),
     ("scenario", "replay.inputs.DrawbarForce", "at the hitch"),
+    ("scenario", "replay.inputs.Payload", "mass that is carried beside that of the vehicle"),
     ("scenario", "replay.inputs.Coasting", "when it was in neutral"),
     ("scenario", "replay.inputs.Brake", "force of the service brakes"),
     ("scenario", "replay.window_s", "after which a long recording starts anew"),

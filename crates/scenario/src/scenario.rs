@@ -382,6 +382,7 @@ fn replay_settings(file: &ScenarioFile) -> ReplaySettings {
                 InputFile::AirTemperature => Inputs::AirTemperature,
                 InputFile::AuxiliaryPower => Inputs::AuxiliaryPower,
                 InputFile::DrawbarForce => Inputs::DrawbarForce,
+                InputFile::Payload => Inputs::Payload,
                 InputFile::Coasting => Inputs::Coasting,
                 InputFile::Brake => Inputs::Brake,
             };

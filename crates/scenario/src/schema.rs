@@ -141,6 +141,7 @@ pub enum InputFile {
     AirTemperature,
     AuxiliaryPower,
     DrawbarForce,
+    Payload,
     Coasting,
     Brake,
 }

@@ -46,6 +46,8 @@ pub(crate) struct Given {
     pub air: Option<Air>,
     pub auxiliary_power_w: Option<f64>,
     pub drawbar_force_n: Option<f64>,
+    /// What is carried beside the vehicle and its tasks [kg].
+    pub payload_kg: f64,
     pub braking: bool,
     /// Speed at which the driver keeps the engine [rad/s]; 0 where the driveline chooses.
     pub engine_speed_rad_s: f64,
@@ -381,7 +383,7 @@ impl Model {
             drawbar_n: given.drawbar_force_n.unwrap_or(0.0),
             ..Sums::default()
         };
-        let mut carried_kg = 0.0;
+        let mut carried_kg = given.payload_kg;
         let tasks = self.tasks.iter().zip(&layout.tasks);
         for ((task, range), mode) in tasks.zip(&scratch.modes) {
             let rates = &mut rates[range.clone()];

@@ -57,6 +57,8 @@ pub enum Inputs {
     AirTemperature,
     AuxiliaryPower,
     DrawbarForce,
+    /// Mass that is carried beside that of the vehicle.
+    Payload,
     Coasting,
     Brake,
     /// The engine turns as it was recorded, whatever the driveline would have chosen. What it is compared with is part of
@@ -66,7 +68,7 @@ pub enum Inputs {
 
 impl Inputs {
     /// Every circumstance that a model is told without being asked to.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Grade,
         Self::Heading,
         Self::Curvature,
@@ -74,6 +76,7 @@ impl Inputs {
         Self::AirTemperature,
         Self::AuxiliaryPower,
         Self::DrawbarForce,
+        Self::Payload,
         Self::Coasting,
         Self::Brake,
     ];
@@ -88,6 +91,7 @@ impl Inputs {
             Self::AirTemperature => &["air_temperature_c"],
             Self::AuxiliaryPower => &["auxiliary_power_w"],
             Self::DrawbarForce => &["drawbar_force_n"],
+            Self::Payload => &["payload_kg"],
             Self::Coasting => &["coasting"],
             Self::Brake => &["brake"],
             Self::EngineSpeed => &["engine_speed_rad_s"],
@@ -219,6 +223,7 @@ impl<'a> Tape<'a> {
                 }
                 Inputs::AuxiliaryPower => given.auxiliary_power_w = Some(value(0)),
                 Inputs::DrawbarForce => given.drawbar_force_n = Some(value(0)),
+                Inputs::Payload => given.payload_kg = value(0),
                 Inputs::Coasting => coasting = columns[0][index] >= 0.5,
                 Inputs::Brake => given.braking = columns[0][index] >= 0.5,
                 Inputs::EngineSpeed => given.engine_speed_rad_s = value(0),

@@ -1,0 +1,75 @@
+//! Spells that belong to places: a stretch of ground holds every run back that comes across it, and a spell of single runs
+//! holds it back wherever it was.
+
+use crate::Case;
+use crate::events::Event;
+use crate::recorded::Recorded;
+
+/// Spells are of a place where this share of what other runs drove there lies in spells of theirs.
+const SHARED: f64 = 0.75;
+/// And where the force differs by less than this share.
+const ALIKE: f64 = 0.25;
+/// Fewer meetings tell nothing.
+const FEWEST: usize = 4;
+
+/// Whether spells are what the ground does: runs that share a path meet them at the same places, as strong.
+pub fn of_places(case: &Case, events: &[Event]) -> bool {
+    let (mut met, mut shared, mut count) = (0.0, 0.0, 0usize);
+    for event in events {
+        let run = &case.runs[event.run];
+        let Some((from_m, to_m)) = stretch(run, event.from_s, event.to_s) else { continue };
+        for (number, other) in case.runs.iter().enumerate() {
+            let apart = number != event.run && other.path == run.path;
+            let Some((begin_m, end_m)) = extent(other).filter(|_| apart) else { continue };
+            let crossed = overlap((from_m, to_m), (begin_m, end_m));
+            if crossed <= 0.5 * (to_m - from_m) {
+                continue;
+            }
+            let alike = |own: &&Event| (own.force_n - event.force_n).abs() < ALIKE * event.force_n.abs();
+            let own = events.iter().filter(|own| own.run == number).filter(alike);
+            let lies: f64 = own
+                .filter_map(|own| stretch(other, own.from_s, own.to_s))
+                .map(|own| overlap((from_m, to_m), own))
+                .sum();
+            met += crossed;
+            shared += lies;
+            count += 1;
+        }
+    }
+    count >= FEWEST && shared > SHARED * met
+}
+
+/// Where a run was between two times [m].
+fn stretch(run: &Recorded, from_s: f64, to_s: f64) -> Option<(f64, f64)> {
+    let times = run.measured.trace.time_s().iter().zip(&run.position_m);
+    range(times.filter(|(time, _)| (from_s..=to_s).contains(*time)).map(|(_, position)| *position))
+}
+
+/// Where a run was at all [m].
+fn extent(run: &Recorded) -> Option<(f64, f64)> {
+    range(run.position_m.iter().copied())
+}
+
+fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    let (low, high) = values
+        .filter(|value| value.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+    (low < high).then_some((low, high))
+}
+
+fn overlap(one: (f64, f64), other: (f64, f64)) -> f64 {
+    (one.1.min(other.1) - one.0.max(other.0)).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stretches_overlap_by_what_they_have_in_common() {
+        assert_eq!(overlap((0.0, 4.0), (3.0, 9.0)), 1.0);
+        assert_eq!(overlap((0.0, 4.0), (5.0, 9.0)), 0.0);
+        assert_eq!(range([3.0, f64::NAN, 1.0].into_iter()), Some((1.0, 3.0)));
+        assert_eq!(range([2.0].into_iter()), None);
+    }
+}

@@ -243,6 +243,13 @@ impl Plan<'_> {
     /// Adds a phase, or a list of them.
     fn add(&mut self, piece: Piece, around: &Setting) -> Result<(), ScenarioError> {
         if let Some(values) = piece.elements() {
+            if values.is_empty() {
+                return Err(piece.refuse(
+                    "phases",
+                    "a list of 0",
+                    "one phase or more: nothing would be driven",
+                ));
+            }
             return values.iter().try_for_each(|node| self.add(piece.at(node), around));
         }
         let file: PhaseFile = piece.read_without(&BESIDE, "phase")?;
@@ -289,6 +296,10 @@ impl Plan<'_> {
             PhaseFile::Stand { .. } => Phase::Stand { until: until("until")? },
             PhaseFile::Repeat { times, .. } => {
                 let inner = piece.field("phases").unwrap_or(piece);
+                if times == 0 {
+                    let at = piece.field("times").unwrap_or(piece);
+                    return Err(at.refuse("times", "0", "1 or more: its phases would never be driven"));
+                }
                 for _ in 0..times {
                     self.add(inner, &setting)?;
                     if self.phases.len() > MOST_PHASES {

@@ -158,3 +158,35 @@ fn a_recorded_drive_is_followed_from_its_first_sample() {
     std::fs::write(&path, "time_s,speed_m_s\n0,1\n0,2\n").unwrap();
     assert!(read().unwrap_err().to_string().contains("increasing"));
 }
+
+/// A cycle of nothing ran for no time and was told as done.
+#[test]
+fn a_cycle_that_drives_nothing_is_refused() {
+    let told = |cycle: &str| {
+        let (begin, end) = (GOOD.find("    cycle: (").unwrap(), GOOD.find("    driver: Pi").unwrap());
+        let text = format!("{}    cycle: {cycle},\n{}", &GOOD[..begin], &GOOD[end..]);
+        read(&text).map_or_else(
+            |error| {
+                let at = error.location().expect("it lies somewhere");
+                format!("{} {}:{}", error.told(), at.line, at.column)
+            },
+            |_| "fine".to_owned(),
+        )
+    };
+    assert_eq!(told("[Repeat(times: 1, phases: [Hold(for_s: 1)])]"), "fine");
+    let never = told("[Repeat(times: 0, phases: [Hold(for_s: 1)])]");
+    assert!(never.contains("`times` is 0, expected 1 or more") && never.ends_with("7:27"), "{never}");
+    let nothing = told("[]");
+    assert!(nothing.contains("one phase or more") && nothing.ends_with("7:12"), "{nothing}");
+    let nothing = told("[Hold(for_s: 1), Repeat(times: 2, phases: [])]");
+    assert!(nothing.contains("one phase or more") && nothing.ends_with("7:54"), "{nothing}");
+}
+
+/// They were told in the words of the reader of RON: raw identifiers, and half of the line.
+#[test]
+fn values_without_their_names_are_told_in_words_of_the_scenario() {
+    let told = broken("Travelled(distance_m: 300)", "Travelled(300)", "300)");
+    assert!(told.contains("found `300`") && told.contains("a field with its name"), "{told}");
+    let told = broken("work: [\"plough\"]", "work: 1", "1");
+    assert!(!told.contains("identifier"), "{told}");
+}

@@ -286,6 +286,7 @@ impl Builder {
             ))
         })?;
         let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
+        let text = with_line_feeds(text);
         if text.trim().is_empty() {
             return Err(unreadable("is empty, expected a RON value in parentheses".to_owned()));
         }
@@ -395,6 +396,16 @@ fn collect(
         Shape::Word => {}
     }
     Ok(())
+}
+
+/// Old machines end a line with CR alone. Lines are counted by line feeds, so those become some; no byte moves.
+fn with_line_feeds(text: String) -> String {
+    if !text.contains('\r') {
+        return text;
+    }
+    let next = text.chars().skip(1).map(Some).chain([None]);
+    let fed = |(letter, next)| if letter == '\r' && next != Some('\n') { '\n' } else { letter };
+    text.chars().zip(next).map(fed).collect()
 }
 
 #[cfg(test)]

@@ -58,6 +58,12 @@ pub fn tell_at(
             // The error shows within or right behind the value that does not fit.
             let field = around(part, begin).or_else(|| around(part, end.saturating_sub(1)));
             let (found, at, name) = match field {
+                // A value without its name: what holds it may be long, and is right as far as it goes.
+                _ if nameless(other) => {
+                    let own = &innermost(part, begin).span;
+                    let field = field.map_or_else(String::new, |field| format!(" in `{}`", field.key));
+                    (format!("`{}`", short(&document.text()[own.clone()])), own.start, field)
+                }
                 Some(field) => (
                     format!("`{}`", short(&document.text()[field.value.span.clone()])),
                     field.value.span.start,
@@ -81,6 +87,12 @@ fn expected(code: &Error) -> String {
             expected.clone()
         }
         Error::ExpectedFloat => "a number".to_owned(),
+        Error::ExpectedBoolean => "true or false".to_owned(),
+        Error::ExpectedInteger | Error::InvalidIntegerDigit { .. } | Error::IntegerOutOfBounds => {
+            "a whole number, neither less than 0 nor beyond all bounds".to_owned()
+        }
+        Error::ExpectedMap => "names and values in braces, as in `{\"name\": value}`".to_owned(),
+        code if nameless(code) => "a field with its name, as in `(name: value)`".to_owned(),
         Error::ExpectedString => "a text in quotes".to_owned(),
         Error::ExpectedArray => "a list in square brackets".to_owned(),
         Error::ExpectedStructLike | Error::ExpectedNamedStructLike(_) => {
@@ -93,6 +105,11 @@ fn expected(code: &Error) -> String {
             format!("another value: {text}")
         }
     }
+}
+
+/// Whether a value stands where the name of a field has to.
+fn nameless(code: &Error) -> bool {
+    matches!(code, Error::InvalidIdentifier(_) | Error::SuggestRawIdentifier(_) | Error::ExpectedIdentifier)
 }
 
 fn plain(name: &str) -> &str {
@@ -154,6 +171,12 @@ fn lacking<'a>(node: &'a Node, field: &str, begin: usize, end: usize) -> &'a Nod
         }
     }
     node
+}
+
+/// The innermost piece that covers a byte.
+fn innermost(node: &Node, at: usize) -> &Node {
+    let covering = children(node).into_iter().find(|child| child.span.start <= at && at < child.span.end);
+    covering.map_or(node, |child| innermost(child, at))
 }
 
 /// The innermost field whose value covers a byte.

@@ -202,3 +202,14 @@ fn candidates_are_checked_and_do_not_act() {
     let message = told(&read(&with("brake_drag(force_n: -1.0)")).unwrap_err(), "-1.0");
     assert!(message.contains("force_n"), "{message}");
 }
+
+/// The whole file counted as one line.
+#[test]
+fn lines_that_end_with_a_return_alone_are_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("old.ron");
+    std::fs::write(&path, "(\r    about: \"t\",\r\n    vehicle: 3, // größe\r)\r").unwrap();
+    let error = Scenario::read(&path, &headland_stock::registry()).unwrap_err();
+    let (told, at) = (error.told(), error.location().unwrap());
+    assert!(told.contains("found `3`") && (at.line, at.column) == (3, 14), "{told} {at:?}");
+}

@@ -13,7 +13,7 @@ use crate::hop;
 use crate::pace::{self, Carried};
 use crate::spin::Spin;
 use crate::standing::{Weight, stand};
-use crate::steer::Steer;
+use crate::steer::{Pushed, Steer};
 use crate::track::{Track, yaw_of};
 use crate::wheel::{Scene, Touch, Wheel};
 use crate::world::{State, World, properties};
@@ -75,6 +75,8 @@ impl<'a> Rig<'a> {
         let ground = Ground::of(&*model.terrain, start.position_m)?;
         let weight_n = mass_kg * model.gravity_m_s2;
         let mut wheels = wheels(axles, chassis, (mass_kg, model.gravity_m_s2));
+        let backward = start.speed_m_s < 0.0;
+        follow_ruts(&mut wheels, axles, backward);
         let inertias = (
             ("roll_inertia_kg_m2", chassis.roll_inertia_kg_m2),
             ("pitch_inertia_kg_m2", chassis.pitch_inertia_kg_m2),
@@ -125,7 +127,7 @@ impl<'a> Rig<'a> {
             world,
             inverse: own.reconstruct_inverse_inertia_matrix(),
             hops: hop::any(&wheels),
-            backward: start.speed_m_s < 0.0,
+            backward,
             wheels,
             spin,
             towed,
@@ -253,8 +255,20 @@ impl<'a> Rig<'a> {
         let from =
             self.state.point(Vector::new(self.steer.pivot_m, 0.0, -self.axles.centre_of_gravity_height_m));
         let speed_m_s = self.state.speed_m_s();
-        if speed_m_s.abs() > LOOKS_ROUND_M_S {
+        if speed_m_s.abs() > LOOKS_ROUND_M_S && self.backward != (speed_m_s < 0.0) {
             self.backward = speed_m_s < 0.0;
+            follow_ruts(&mut self.wheels, self.axles, self.backward);
+        }
+        if let Some(towed) = self.towed.as_ref().filter(|_| self.backward && !self.steer.aslant()) {
+            let far_m = self.chassis.hitch_position_m - towed.behind_m() - self.steer.look_ahead_m();
+            let aim = self.track.aim(towed.middle(), (towed.state.ahead(), towed.state.left()), far_m, 0.0);
+            let pushed = Pushed {
+                length_m: towed.behind_m(),
+                lever_m: self.steer.pivot_m - self.chassis.hitch_position_m,
+                angle_rad: towed.angle_rad(&self.state),
+            };
+            self.steer.push(&pushed, aim, step_s);
+            return;
         }
         let way = if self.backward { -1.0 } else { 1.0 };
         let far_m = self.steer.pivot_m + way * self.steer.look_ahead_m();
@@ -270,6 +284,13 @@ impl<'a> Rig<'a> {
     fn hitch(&self) -> Vector {
         let up_m = self.axles.hitch_height_m - self.axles.centre_of_gravity_height_m;
         self.state.point(Vector::new(self.chassis.hitch_position_m, 0.0, up_m))
+    }
+}
+
+/// Counts for every wheel those that pass before it.
+fn follow_ruts(wheels: &mut [Wheel], axles: &Axles, backward: bool) {
+    for wheel in wheels {
+        wheel.earlier = axles.earlier(wheel.axle, backward);
     }
 }
 

@@ -7,10 +7,25 @@
 //! Mitschke and Wallentowitz, *Dynamik der Kraftfahrzeuge* (2014), chapter D. x₀ is where the axle that does not steer
 //! stands, or the middle of a vehicle whose axles all do.
 //! A driver who goes backward aims at a point of the path behind; the circle through it is the same formula.
+//! One who pushes a trailer backward aims with the trailer's axle, and turns the hitch to the angle of that circle:
+//!
+//! κ₁ = κ₂ / √(1 + κ₂² (l² − m²)),  β₂ = atan l κ₂ + atan m κ₁      steady: κ₂ of the trailer's axle, l behind the hitch, m behind x₀
+//! dβ/ds = κ (1 + (m/l) cos β) − sin β / l                          the hitch angle along the way
+//! κ = (sin β / l + k (β₂ − β)) / (1 + (m/l) cos β),  k < 0 going back  so β comes to β₂ as exp(−|k s|), where left alone it grows
+//!
+//! Source: the hitch angle as the inner loop of two, Pradalier and Usher, *Robust trajectory tracking for a reversing
+//! tractor-trailer system*, Journal of Field Robotics 25 (2008); its kinematics inverted instead of linearised.
 //! Wheels turn no further and no faster than the steering lets them.
 
 use crate::chassis::{Steering, SteeringMode};
 use headland_sim::Axles;
+
+/// Part of the steering that a steady turn with a trailer behind may take.
+const RESERVE: f64 = 0.8;
+/// A trailer turns on no smaller radius than this part of its length.
+const TIGHTEST: f64 = 0.25;
+/// The hitch settles within this part of the look ahead, so that the trailer follows what is aimed at.
+const SETTLES: f64 = 1.0 / 3.0;
 
 /// The steering of a vehicle.
 #[derive(Clone, Debug)]
@@ -34,6 +49,32 @@ pub(crate) struct Aim {
     pub left_m: f64,
     /// Heading that is wanted less that which the vehicle has, counterclockwise [rad].
     pub off_rad: f64,
+}
+
+/// A trailer that is pushed backward.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pushed {
+    /// From the hitch back to its axle, l [m].
+    pub length_m: f64,
+    /// From x₀ back to the hitch, m [m].
+    pub lever_m: f64,
+    /// Yaw of the vehicle less that of the trailer, β [rad].
+    pub angle_rad: f64,
+}
+
+impl Pushed {
+    /// The curvature with which the trailer comes to `wanted_per_m` of its own, kept to what a vehicle can that turns by
+    /// `most_per_m` at most; the hitch angle settles within `settles_m`.
+    fn curvature_per_m(&self, wanted_per_m: f64, most_per_m: f64, settles_m: f64) -> f64 {
+        let Self { length_m: l, lever_m: m, angle_rad } = *self;
+        // What the steering can hold, less a reserve without which it could not turn back.
+        let (tightest_m, least_m) = (1.0 / (RESERVE * most_per_m), TIGHTEST * l);
+        let own_m = (tightest_m * tightest_m + m * m - l * l).max(least_m * least_m).sqrt();
+        let trailer = wanted_per_m.clamp(-1.0 / own_m, 1.0 / own_m);
+        let steady = trailer / (1.0 + trailer * trailer * (l * l - m * m)).max(TIGHTEST * TIGHTEST).sqrt();
+        let off_rad = (l * trailer).atan() + (m * steady).atan() - angle_rad;
+        (angle_rad.sin() / l - off_rad / settles_m) / (1.0 + m / l * angle_rad.cos())
+    }
 }
 
 impl Steer {
@@ -91,6 +132,23 @@ impl Steer {
             |is: f64, wanted: f64| is + (wanted.clamp(-limit_rad, limit_rad) - is).clamp(-most, most);
         self.turned_rad = toward(self.turned_rad, (self.lever_m * curvature).atan());
         self.aslant_rad = toward(self.aslant_rad, aslant_rad);
+    }
+
+    /// Whether the vehicle goes aslant.
+    pub fn aslant(&self) -> bool {
+        matches!(self.steering.mode, SteeringMode::Crab { .. })
+    }
+
+    /// Turns the wheels for one step of a vehicle that pushes a trailer backward; the aim is that of the trailer's axle.
+    pub fn push(&mut self, pushed: &Pushed, aim: Aim, step_s: f64) {
+        let Steering { limit_rad, rate_rad_s, look_ahead_m, .. } = self.steering;
+        let far_m = aim.ahead_m.hypot(aim.left_m);
+        let wanted_per_m = 2.0 * aim.left_m / (far_m * far_m);
+        let most_per_m = limit_rad.tan() / self.lever_m;
+        let curvature = pushed.curvature_per_m(wanted_per_m, most_per_m, SETTLES * look_ahead_m);
+        let most = rate_rad_s * step_s;
+        let wanted = (self.lever_m * curvature).atan().clamp(-limit_rad, limit_rad);
+        self.turned_rad += (wanted - self.turned_rad).clamp(-most, most);
     }
 
     /// Angle of a wheel of an axle at a place, counterclockwise [rad].

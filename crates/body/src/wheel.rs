@@ -39,6 +39,7 @@ pub(crate) struct Wheel<'a> {
     /// Of all its tyres [N/m].
     pub stiffness_n_m: f64,
     pub damping_n_s_m: f64,
+    /// Wheels that pass before it in its rut, the way the vehicle goes.
     pub earlier: u32,
     /// Half the length of its footprint on level ground [m].
     pub footprint_m: f64,

@@ -37,8 +37,8 @@ pub struct Axles {
     pub slip_limit: f64,
     /// Part of the weight, and load per moment [1/m], of each axle.
     shares: Vec<(f64, f64)>,
-    /// Wheels that go ahead in the same rut, by axle.
-    earlier: Vec<u32>,
+    /// Wheels that go ahead in the same rut, by axle: driving forward, and backward.
+    earlier: [Vec<u32>; 2],
 }
 
 impl Axles {
@@ -78,7 +78,8 @@ impl Axles {
                 });
             }
         }
-        let earlier = list.iter().map(|axle| earlier(&list, axle)).collect();
+        let earlier =
+            [1.0, -1.0].map(|way| list.iter().map(|axle| earlier(&list, axle, way)).collect::<Vec<u32>>());
         Ok(Self { list, centre_of_gravity_height_m, hitch_height_m, slip_limit, shares, earlier })
     }
 
@@ -93,9 +94,9 @@ impl Axles {
         share * weight_n + per_moment * moment_n_m
     }
 
-    /// Wheels ahead of those of an axle in the same rut, driving forward; a vehicle that rolls back keeps the count.
-    pub fn earlier(&self, index: usize) -> u32 {
-        self.earlier[index]
+    /// Wheels that pass before those of an axle in the same rut: those ahead of it, or behind it where the vehicle goes backward.
+    pub fn earlier(&self, index: usize, backward: bool) -> u32 {
+        self.earlier[usize::from(backward)][index]
     }
 }
 
@@ -121,12 +122,12 @@ fn check(list: &[Axle]) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// A wheel runs in the rut of one ahead where their middles are less than half a width of the narrower apart.
-fn earlier(list: &[Axle], axle: &Axle) -> u32 {
+/// A wheel runs in the rut of one ahead, the way the vehicle goes, where their middles are less than half a width of the narrower apart.
+fn earlier(list: &[Axle], axle: &Axle, way: f64) -> u32 {
     let ahead = list.iter().filter(|other| {
         let apart = 0.5 * (other.track_m - axle.track_m).abs();
         let narrower = other.tyre.width_m.min(axle.tyre.width_m);
-        other.position_m > axle.position_m && apart < 0.5 * narrower
+        way * other.position_m > way * axle.position_m && apart < 0.5 * narrower
     });
     u32::try_from(ahead.count()).unwrap_or(u32::MAX)
 }
@@ -177,7 +178,9 @@ mod tests {
     fn a_wheel_follows_in_the_rut_of_one_ahead_that_runs_in_line() {
         let wide = Axle { track_m: 3.2, ..axle(-3.0) };
         let axles = of(vec![axle(2.0), axle(1.0), wide, axle(-2.0)]).unwrap();
-        assert_eq!((0..4).map(|index| axles.earlier(index)).collect::<Vec<_>>(), [0, 1, 0, 2]);
+        let passes = |backward| (0..4).map(|index| axles.earlier(index, backward)).collect::<Vec<_>>();
+        assert_eq!(passes(false), [0, 1, 0, 2]);
+        assert_eq!(passes(true), [2, 1, 0, 0], "backward the last axle is the first");
     }
 
     #[test]

@@ -84,6 +84,7 @@ impl Model {
             axles,
             situation: asked.situation,
             rolling_m_s: (asked.situation.speed_m_s * asked.direction).max(0.0),
+            backward: asked.direction < 0.0,
             states: &mut scratch.axles,
             firm: false,
         };

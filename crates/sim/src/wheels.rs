@@ -88,6 +88,8 @@ pub(crate) struct Stance<'a> {
     pub axles: &'a Axles,
     pub situation: Situation,
     pub rolling_m_s: f64,
+    /// Whether the last axle goes first.
+    pub backward: bool,
     pub states: &'a mut [AxleState],
     /// Whether some of the ground knows no slip: then the whole vehicle has none.
     pub firm: bool,
@@ -101,7 +103,7 @@ impl Stance<'_> {
             load_n: self.states[index].load_n.max(0.0) / f64::from(axle.wheels),
             slip,
             speed_m_s: self.rolling_m_s,
-            earlier_passes: self.axles.earlier(index),
+            earlier_passes: self.axles.earlier(index, self.backward),
             position_m: self.position_m(axle.position_m),
             place: self.states[index].place,
         })

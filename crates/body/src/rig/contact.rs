@@ -39,7 +39,7 @@ pub(crate) fn wheels<'a>(
                 body: chassis.axles[index],
                 stiffness_n_m: of_tyre(tyres),
                 damping_n_s_m: tyres * chassis.axles[index].damping_n_s_m,
-                earlier: axles.earlier(index),
+                earlier: axles.earlier(index, false),
                 // The chord of a circle that the ground cuts off.
                 footprint_m: ((axle.tyre.diameter_m - given_m) * given_m).max(0.0).sqrt(),
                 strut: chassis.axles[index].suspension.map(|own| {

@@ -95,6 +95,16 @@ impl<'a> Towed<'a> {
         }))
     }
 
+    /// How far the mean of its axles is behind the coupling [m].
+    pub fn behind_m(&self) -> f64 {
+        self.trailer.behind_m()
+    }
+
+    /// That mean, at the height of the coupling.
+    pub fn middle(&self) -> Vector {
+        self.state.pose.translation - self.state.ahead() * self.behind_m()
+    }
+
     /// What presses on the hitch at rest [N].
     pub fn pressing_n(&self, gravity_m_s2: f64) -> f64 {
         self.carried_share * self.mass_kg * gravity_m_s2

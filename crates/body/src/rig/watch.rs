@@ -39,8 +39,12 @@ impl Rig<'_> {
             if towed.state.up().z < OVERTURNED {
                 return Some("the trailer overturned".to_owned());
             }
-            if towed.angle_rad(&self.state).abs() > FRAC_PI_2 {
-                return Some("the trailer stands across the vehicle: it has jackknifed".to_owned());
+            let angle_rad = towed.angle_rad(&self.state).abs();
+            if angle_rad > FRAC_PI_2 {
+                return Some(format!(
+                    "the trailer has jackknifed: it stands across the vehicle, at a hitch angle of {:.0}°",
+                    angle_rad.to_degrees()
+                ));
             }
         }
         if self.ground.turned(&self.track.place) {

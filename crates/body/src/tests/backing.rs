@@ -1,9 +1,9 @@
 //! Driving backward: along a path, to and fro, and as the longitudinal fidelity does.
 
-use super::{Circle, channel, chassis, cycle, last, model, run, soil, terrain};
+use super::{Circle, Tow, channel, chassis, cycle, hitched, last, model, run, soil, terrain};
 use crate::chassis::{Chassis, Differential, SteeringMode};
 use crate::simulate;
-use headland_plugin::{Delivery, Demand, Driveline};
+use headland_plugin::{Contact, Delivery, Demand, Driveline, Footing, Soil, WheelContact};
 use headland_sim::{End, Model, Named, Outcome, Phase, Until};
 use headland_soil::Constant;
 use headland_task::Drawbar;
@@ -155,4 +155,104 @@ fn a_crab_goes_backward_along_its_path() {
     assert_eq!(outcome.end, End::Finished);
     assert!(last(&outcome, "path_offset_m").abs() < 0.1, "{}", last(&outcome, "path_offset_m"));
     assert!((last(&outcome, "heading_rad") - 0.3).abs() < 0.03, "{}", last(&outcome, "heading_rad"));
+}
+
+/// A tractor with a trailer of 4.5 m, both in line on their path.
+fn pushing(terrain: Box<dyn headland_plugin::Terrain>) -> Model {
+    let mut model = driven(model(terrain, soil::<Constant>("(coefficient: 0.05)")));
+    model.tasks.push(Named { name: "trailer".to_owned(), plugin: Box::new(Tow) });
+    model
+}
+
+fn free(mut chassis: Chassis) -> Chassis {
+    chassis.centre = Differential::Open;
+    for axle in &mut chassis.axles {
+        axle.differential = Differential::Open;
+    }
+    chassis
+}
+
+/// R_h² = R² + l², and the rear axle goes on √(R_h² − m²): round a circle of 20 m the trailer's axle keeps to the path, and the
+/// hitch is bent by asin(l / R_h) + atan(m / R_rear).
+#[test]
+fn a_trailer_is_steered_backward_round_a_circle() {
+    let radius_m = 20.0;
+    let model = pushing(Box::new(Circle { radius_m }));
+    for mode in [SteeringMode::Front, SteeringMode::All] {
+        let mut chassis = free(hitched());
+        chassis.steering.mode = mode;
+        let outcome =
+            simulate(&model, &chassis, &cycle(-1.0, vec![Phase::Hold { for_s: 100.0 }], 4e-3), 0.1).unwrap();
+        assert_eq!(outcome.end, End::Finished, "{mode:?}");
+        assert!(last(&outcome, "position_m") < -80.0, "{}", last(&outcome, "position_m"));
+        let (sine, cosine) = last(&outcome, "trailer_heading_rad").sin_cos();
+        // From the trailer's centre of gravity to its axle: a tenth of 4.5 m.
+        let (east_m, north_m) = (
+            last(&outcome, "trailer_east_m") - 0.45 * sine,
+            last(&outcome, "trailer_north_m") - 0.45 * cosine,
+        );
+        let axle_m = (east_m - radius_m).hypot(north_m);
+        assert!((axle_m - radius_m).abs() < 0.3, "{mode:?}: the trailer's axle goes on {axle_m} m");
+        let pivot_m = if mode == SteeringMode::Front { -2.0 } else { -0.2 };
+        let (l, m, hitch_m) = (4.5, pivot_m + 3.2, axle_m.hypot(4.5));
+        let expected_rad = -((l / hitch_m).asin() + (m / hitch_m).asin());
+        let angle_rad = last(&outcome, "trailer_angle_rad");
+        assert!((angle_rad / expected_rad - 1.0).abs() < 0.05, "{mode:?}: {angle_rad} {expected_rad}");
+        assert!(outcome.ledger.relative_residual() < 1e-3, "{:?}", outcome.ledger);
+    }
+}
+
+/// Bent by a turn ahead, a trailer is straightened going back: without a driver who steers it, it would fold up within its length.
+#[test]
+fn a_bent_trailer_is_straightened_backward() {
+    let model = pushing(Box::new(Circle { radius_m: 15.0 }));
+    let phases = vec![
+        to(1.5, Until::Travelled(20.0)),
+        to(0.0, Until::Stopped),
+        to(-1.5, Until::Position(-30.0)),
+        to(0.0, Until::Stopped),
+    ];
+    let outcome = simulate(&model, &free(hitched()), &cycle(0.0, phases, 4e-3), 0.1).unwrap();
+    assert_eq!(outcome.end, End::Finished, "{:?}", outcome.phases);
+    assert!(last(&outcome, "position_m") < -30.0);
+    let angle_rad = channel(&outcome, "trailer_angle_rad");
+    let most_rad = angle_rad.iter().fold(0.0f64, |most, now| most.max(now.abs()));
+    assert!(most_rad < 0.8, "{most_rad}");
+}
+
+/// Asks for nothing but the count of earlier passes, a hundredth of resistance for each.
+#[derive(Debug)]
+struct Counting;
+
+impl Soil for Counting {
+    fn resistance_n(&self, contact: &Contact) -> f64 {
+        0.1 * contact.load_n
+    }
+
+    fn wheel(&self, contact: &WheelContact) -> Option<Footing> {
+        let passes = f64::from(contact.earlier_passes);
+        Some(Footing {
+            gross_traction_n: contact.load_n * contact.slip.clamp(-0.5, 0.5),
+            motion_resistance_n: (0.05 - 0.02 * passes) * contact.load_n,
+            sinkage_m: 0.03 + 0.01 * passes,
+        })
+    }
+}
+
+/// The axle that comes first presses the rut: the front one ahead, the rear one going back, in both fidelities.
+#[test]
+fn the_axle_that_comes_first_presses_the_rut() {
+    let model = driven(model(terrain::<Flat>("()"), Box::new(Counting)));
+    for (speed_m_s, depths_m) in [(1.5, [0.03, 0.04]), (-1.5, [0.04, 0.03])] {
+        let cycle = cycle(0.0, vec![to(speed_m_s, Until::Travelled(15.0))], 2e-3);
+        let three = simulate(&model, &open(SteeringMode::Front), &cycle, 0.0).unwrap();
+        let one = headland_sim::simulate(&model, &cycle).unwrap();
+        for (index, expected_m) in depths_m.into_iter().enumerate() {
+            let name = format!("axle_{}_sinkage_m", index + 1);
+            assert!((last(&one, &name) / expected_m - 1.0).abs() < 1e-9, "{speed_m_s} {name}");
+            let name = format!("axle_{}_left_sinkage_m", index + 1);
+            let found_m = last(&three, &name);
+            assert!((found_m / expected_m - 1.0).abs() < 1e-3, "{speed_m_s} {name}: {found_m}");
+        }
+    }
 }

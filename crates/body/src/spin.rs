@@ -177,9 +177,11 @@ impl Spin {
     }
 
     /// One step under the driveline's force and the brakes, with the ground's force on each wheel `gross_n`.
+    ///
+    /// A driveline that pushes against the `way` of the vehicle brakes: an engine holds wheels that stand, and turns none back.
     pub fn advance(
         &mut self,
-        drive_n: f64,
+        (drive_n, way): (f64, f64),
         brake_n: f64,
         gross_n: impl Fn(usize) -> f64,
         step_s: f64,
@@ -190,11 +192,13 @@ impl Spin {
             let mass_kg = shaft.mass_kg + shaft.share * self.turning_kg;
             let ground_n: f64 = shaft.wheels.iter().map(|(wheel, lead)| lead * gross_n(*wheel)).sum();
             let before_m_s = shaft.speed_m_s;
-            let free_m_s = before_m_s + step_s * (shaft.share * drive_n - ground_n) / mass_kg;
+            let (pushed_n, slowed_n) =
+                if drive_n * way < 0.0 { (0.0, drive_n.abs()) } else { (drive_n, 0.0) };
+            let rolling_m_s = before_m_s + step_s * (shaft.share * pushed_n - ground_n) / mass_kg;
+            let free_m_s = slower(rolling_m_s, step_s * shaft.share * slowed_n / mass_kg);
             // 0 · ∞ is what no brake does.
             let held_m_s = if brake_n == 0.0 { 0.0 } else { step_s * shaft.braked * brake_n / mass_kg };
-            shaft.speed_m_s =
-                if free_m_s.abs() <= held_m_s { 0.0 } else { free_m_s - held_m_s.copysign(free_m_s) };
+            shaft.speed_m_s = slower(free_m_s, held_m_s);
             let way_m = 0.5 * step_s * (before_m_s + shaft.speed_m_s);
             turned.driven_m += shaft.share * way_m;
             turned.brakes_j += mass_kg * (free_m_s - shaft.speed_m_s) / step_s * way_m;
@@ -214,4 +218,9 @@ impl Spin {
     pub fn shafts(&self) -> impl Iterator<Item = (f64, &[(usize, f64)])> {
         self.shafts.iter().map(|shaft| (shaft.mass_kg, shaft.wheels.as_slice()))
     }
+}
+
+/// A speed less what takes from it and cannot turn it back [m/s].
+fn slower(speed_m_s: f64, by_m_s: f64) -> f64 {
+    if speed_m_s.abs() <= by_m_s { 0.0 } else { speed_m_s - by_m_s.copysign(speed_m_s) }
 }

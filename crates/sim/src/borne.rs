@@ -218,6 +218,7 @@ impl Model {
         let lost_n = sums.loss_share * rolled.delivery.force_n.abs() * sign(motion.driven_m_s);
         let push = Push {
             drive_n: rolled.delivery.force_n - lost_n,
+            way: asked.way(),
             brake_n: rolled.brake_n,
             free_n: air_n + sums.pushed_n,
             resistance_n: sums.resistance_n.max(-(motion.resistance_n + sums.drawbar_n)),

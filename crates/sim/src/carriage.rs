@@ -12,6 +12,8 @@ use std::fmt::Debug;
 pub struct Push {
     /// Force of the driveline at the driven wheels, forward, less what effects take of it [N].
     pub drive_n: f64,
+    /// The way that the vehicle goes or is to go, 1 or −1: a force of the driveline against it brakes, and turns no wheel back.
+    pub way: f64,
     /// The most that the brakes hold the wheels with [N]; infinite where they are to stand.
     pub brake_n: f64,
     /// Force in the centre of gravity, forward, whether the vehicle moves or not: air and effects [N].

@@ -62,8 +62,12 @@ impl Carriage for Rig<'_> {
         self.feel(step_s);
         self.way = (self.way + step_s * speed_m_s / RESTING_M) / (1.0 + step_s * speed_m_s.abs() / RESTING_M);
         let rolled: Vec<f64> = self.spin.wheels_m_s.clone();
-        let turned =
-            self.spin.advance(push.drive_n, push.brake_n, |wheel| self.wheels[wheel].felt.gross_n, step_s);
+        let turned = self.spin.advance(
+            (push.drive_n, push.way),
+            push.brake_n,
+            |wheel| self.wheels[wheel].felt.gross_n,
+            step_s,
+        );
         let (ahead, hitch) = (before.ahead(), self.hitch());
         // What resists wheels of its own acts there.
         let drawbar_n = if self.towed.is_some() { push.drawbar_n - push.towed_n } else { push.drawbar_n };

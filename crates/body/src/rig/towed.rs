@@ -222,7 +222,7 @@ impl<'a> Towed<'a> {
     /// Turns its wheels for a step; gives force in its centre of gravity and moment about it.
     pub fn push(&mut self, way: f64, gravity_m_s2: f64, step_s: f64) -> (Vector, Vector, Turned) {
         let wheels = &self.wheels;
-        let turned = self.spin.advance(0.0, 0.0, |wheel| wheels[wheel].felt.gross_n, step_s);
+        let turned = self.spin.advance((0.0, 1.0), 0.0, |wheel| wheels[wheel].felt.gross_n, step_s);
         let (mut force, mut moment) = forces(&self.wheels, &self.spin, &self.state, way);
         if hop::any(&self.wheels) {
             let bearer = Bearer { mass_kg: self.mass_kg, inverse: &self.inverse, state: &self.state };

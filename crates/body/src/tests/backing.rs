@@ -220,6 +220,20 @@ fn a_bent_trailer_is_straightened_backward() {
     assert!(most_rad < 0.8, "{most_rad}");
 }
 
+/// One who goes aslant does not steer the hitch, which folds up: told with time, place and angle, and the run up to there is kept.
+#[test]
+fn a_trailer_that_jackknifes_is_told_with_its_angle() {
+    let model = pushing(Box::new(Circle { radius_m: 15.0 }));
+    let phases =
+        vec![to(1.5, Until::Travelled(20.0)), to(0.0, Until::Stopped), to(-1.5, Until::Position(-30.0))];
+    let mut aslant = free(hitched());
+    aslant.steering.mode = SteeringMode::Crab { angle_rad: 0.05 };
+    let outcome = simulate(&model, &aslant, &cycle(0.0, phases, 4e-3), 0.1).unwrap();
+    let End::Stopped { reason, .. } = &outcome.end else { panic!("{:?}", outcome.end) };
+    assert!(reason.contains("jackknifed") && reason.contains("hitch angle of 9"), "{reason}");
+    assert!(outcome.trace.duration_s() > 3.0, "{}", outcome.trace.duration_s());
+}
+
 /// Asks for nothing but the count of earlier passes, a hundredth of resistance for each.
 #[derive(Debug)]
 struct Counting;

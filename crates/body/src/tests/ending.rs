@@ -76,3 +76,50 @@ fn a_wheel_that_sinks_to_its_hub_ends_the_run_and_is_named() {
     let ruts = super::channel(&outcome, "axle_1_left_sinkage_m");
     assert!((ruts[ruts.len() - 10] - 0.0355).abs() < 2e-3, "{}", ruts[ruts.len() - 10]);
 }
+
+/// A driveline that takes back what it is asked to, at any speed.
+#[derive(Debug)]
+struct TakesBack;
+
+impl headland_plugin::Driveline for TakesBack {
+    fn losses(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    fn source(&self) -> &'static str {
+        "store"
+    }
+
+    fn rotating_mass_kg(&self, _: bool) -> f64 {
+        100.0
+    }
+
+    fn deliver(
+        &self,
+        demand: &headland_plugin::Demand,
+        _: &[f64],
+        _: &mut [f64],
+    ) -> headland_plugin::Delivery {
+        let force_n = if demand.coasting { 0.0 } else { demand.force_n.max(-120e3) };
+        let source_power_w = force_n * demand.speed_m_s;
+        headland_plugin::Delivery { force_n, source_power_w, ..headland_plugin::Delivery::NOTHING }
+    }
+}
+
+/// Wheels that stood were driven backward by a driveline that braked, which knew nothing of it: slip took energy that nobody gave.
+#[test]
+fn a_hard_stop_closes_its_ledger_better_the_shorter_its_steps() {
+    let left = |step_s: f64| {
+        let ground = super::terrain::<Flat>("()");
+        let mut model = super::model(ground, super::soil::<Constant>("(coefficient: 0.06)"));
+        model.driveline = Box::new(TakesBack);
+        let phases =
+            vec![Phase::Reach { speed_m_s: 0.0, acceleration_m_s2: 5.0 }, Phase::Hold { for_s: 1.0 }];
+        let outcome = super::run(&model, &super::cycle(5.5, phases, step_s));
+        assert_eq!(outcome.end, End::Finished);
+        outcome.ledger.relative_residual()
+    };
+    let all = [2e-3, 1e-3, 5e-4, 2.5e-4].map(left);
+    // First order or better: each half of a step leaves half or less.
+    assert!(all[1] < 1e-3 && all.windows(2).all(|pair| pair[1] < 0.55 * pair[0]), "{all:?}");
+}

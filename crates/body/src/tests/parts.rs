@@ -42,11 +42,11 @@ fn an_open_differential_gives_equal_torques_and_a_locked_one_equal_speeds() {
     // The left front wheel stands on ice: it gives no force back.
     let ground = |wheel: usize| if wheel == 0 { 0.0 } else { 2_000.0 };
     let mut open = spin(Differential::Open, Differential::Open, None);
-    open.advance(4_000.0, 0.0, ground, 0.01);
+    open.advance((4_000.0, 1.0), 0.0, ground, 0.01);
     // 2 kN for each front wheel of 200 kg: the one spins up at 10 m/s², the other holds its speed.
     assert!((open.wheels_m_s[0] - 2.1).abs() < 1e-12 && (open.wheels_m_s[1] - 2.0).abs() < 1e-12);
     let mut locked = spin(Differential::Locked, Differential::Locked, Some(1.0));
-    locked.advance(4_000.0, 0.0, ground, 0.01);
+    locked.advance((4_000.0, 1.0), 0.0, ground, 0.01);
     // 4 kN less 6 kN on 800 kg.
     assert!(locked.wheels_m_s.iter().all(|speed| (speed - (2.0 - 0.025)).abs() < 1e-12));
 }
@@ -57,7 +57,7 @@ fn axles_turn_by_their_leads_and_work_is_what_energy_changes_by() {
     assert!((led.wheels_m_s[2] / led.wheels_m_s[0] - 1.05).abs() < 1e-12);
     let (before_j, step_s) = (led.kinetic_j(), 0.02);
     let rolled: Vec<f64> = led.wheels_m_s.clone();
-    let turned = led.advance(3_000.0, 1_000.0, |_| 500.0, step_s);
+    let turned = led.advance((3_000.0, 1.0), 1_000.0, |_| 500.0, step_s);
     let ground_j: f64 = rolled.iter().zip(&led.wheels_m_s).map(|(a, b)| 500.0 * 0.5 * (a + b) * step_s).sum();
     let gained_j = 3_000.0 * turned.driven_m - turned.brakes_j - ground_j;
     assert!((led.kinetic_j() - before_j - gained_j).abs() < 1e-9);
@@ -67,11 +67,26 @@ fn axles_turn_by_their_leads_and_work_is_what_energy_changes_by() {
 fn brakes_stop_wheels_and_never_turn_them_back() {
     let mut spin = spin(Differential::Locked, Differential::Locked, Some(1.0));
     for _ in 0..100 {
-        spin.advance(0.0, 50e3, |_| 0.0, 0.01);
+        spin.advance((0.0, 1.0), 50e3, |_| 0.0, 0.01);
     }
     assert!(spin.wheels_m_s.iter().all(|speed| *speed == 0.0));
-    let held = spin.advance(1e6, f64::INFINITY, |_| 0.0, 0.01);
+    let held = spin.advance((1e6, 1.0), f64::INFINITY, |_| 0.0, 0.01);
     assert_eq!((held.driven_m, held.brakes_j, spin.driven_m_s()), (0.0, 0.0, 0.0));
+}
+
+/// An engine that brakes harder than the ground turns wheels stops them; it drove them backward, from nothing.
+#[test]
+fn a_driveline_that_brakes_turns_no_wheel_back_and_one_that_drives_backward_does() {
+    let mut braking = spin(Differential::Locked, Differential::Locked, Some(1.0));
+    for _ in 0..100 {
+        braking.advance((-50e3, 1.0), 0.0, |_| -1e3, 0.01);
+    }
+    assert!(braking.wheels_m_s.iter().all(|speed| *speed == 0.0), "{:?}", braking.wheels_m_s);
+    let mut driving = spin(Differential::Locked, Differential::Locked, Some(1.0));
+    for _ in 0..100 {
+        driving.advance((-50e3, -1.0), 0.0, |_| -1e3, 0.01);
+    }
+    assert!(driving.driven_m_s() < -1.0, "{:?}", driving.wheels_m_s);
 }
 
 fn wheel<'a>(slip: f64, side: f64) -> Wheel<'a> {

@@ -198,7 +198,7 @@ impl<'a> Study<'a> {
             }
         }
         let notes = unique;
-        Ok(Self { scenario, registry, runs, parameters, paths, notes, stop: || false })
+        Ok(Self { scenario, registry, runs, parameters, paths, notes, stop: || false }.limited())
     }
 
     /// The scenario.
@@ -209,6 +209,36 @@ impl<'a> Study<'a> {
     /// Dotted paths of the free parameters.
     pub fn paths(&self) -> &[String] {
         &self.paths
+    }
+
+    /// Where nobody gave a free parameter a bound, that is the last value that the model accepts, where it refuses any.
+    fn limited(mut self) -> Self {
+        /// Nothing is ever so many standard deviations from its prior.
+        const FAR: f64 = 40.0;
+        const HALVINGS: usize = 40;
+        let Some(run) = self.runs.first().cloned() else { return self };
+        for index in 0..self.parameters.len() {
+            let Parameter { value, sd, bounds, .. } = self.parameters[index].clone();
+            let reach = FAR * sd.unwrap_or(value.abs());
+            let able = |changed: f64| {
+                let mut values = self.priors();
+                values[index] = changed;
+                self.model(&run, &values).is_ok()
+            };
+            let last = |bound: f64, side: f64| {
+                let (mut inside, mut beyond) = (value, value + side * reach);
+                if bound.is_finite() || able(beyond) || !able(inside) {
+                    return bound;
+                }
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (inside + beyond);
+                    if able(middle) { inside = middle } else { beyond = middle }
+                }
+                inside
+            };
+            self.parameters[index].bounds = (last(bounds.0, -1.0), last(bounds.1, 1.0));
+        }
+        self
     }
 
     /// The prior values of the free parameters.

@@ -80,7 +80,9 @@ pub fn fault(case: &Case, system: &System, id: &str, step: f64) -> Result<Column
                 let samples = match kind {
                     Kind::Motion => motion(id, step, (before, &case.nominal[run]), (after, &said[run])),
                     Kind::Parity => less("specific_force_m_s2", before, after),
-                    Kind::Slip => less("wheel_speed_m_s", before, after),
+                    Kind::Slip => {
+                        as_modelled(less("wheel_speed_m_s", before, after), before, &case.nominal[run])
+                    }
                     // What drives the motor turns with the wheels: a wrong speed is a wrong power.
                     Kind::Voltage => Vec::new(),
                     Kind::Shaft | Kind::Battery | Kind::Charge | Kind::Fuel => {
@@ -91,6 +93,20 @@ pub fn fault(case: &Case, system: &System, id: &str, step: f64) -> Result<Column
             })
             .collect()
     }))
+}
+
+/// What a correction takes of the speed of the wheels, with the speed that the model has instead of the measured one, whose
+/// noise is in the residual already: a column that shares it would explain it.
+fn as_modelled(less: Vec<f64>, run: &Recorded, said: &Said) -> Vec<f64> {
+    let Some(measured) = run.measured.trace.get("wheel_speed_m_s") else { return less };
+    let one = |((less, measured), modelled): ((f64, &f64), &f64)| {
+        if less == 0.0 || *measured == 0.0 || !modelled.is_finite() {
+            less
+        } else {
+            less * modelled / measured
+        }
+    };
+    less.into_iter().zip(measured).zip(&said.wheel_speed_m_s).map(one).collect()
 }
 
 /// The channel as it was less as it is, corrected.

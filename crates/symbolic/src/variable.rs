@@ -132,9 +132,9 @@ pub(crate) fn check<'a>(
     fit: &[bool],
     target: Target,
 ) -> Result<Vec<Checked<'a>>, SymbolicError> {
-    let allowed = |known: &&Known| target == Target::Power || known.name != ACCELERATION;
     /// A smaller share of the greatest value is rounding.
     const LEAST_SPREAD: f64 = 1e-9;
+    let allowed = |known: &&Known| target == Target::Power || known.name != ACCELERATION;
     let mut all: Vec<Checked<'a>> = Vec::new();
     let mut names: Vec<&str> = Vec::new();
     for variable in variables {

@@ -30,6 +30,10 @@ const STUCK_SAMPLES_BEFORE_A_LEAP: usize = 6;
 const HELD: f64 = 8.0;
 /// What is usual: all but this share of the samples.
 const UNUSUAL: f64 = 0.05;
+/// A channel whose noise lets no more than this share of its samples repeat the one before is never still by itself,
+const NOISY: f64 = 0.02;
+/// and one that is still for more than this share of the samples is renewed that slowly.
+const MOSTLY: f64 = 0.3;
 /// A channel is coarse where this share of the samples repeats the one before while the vehicle moves.
 const REPEATED: f64 = 0.35;
 /// A coarse channel mostly changes by fewer steps than this.
@@ -43,6 +47,7 @@ const BUS: f64 = 0.025;
 /// Below this the vehicle stands, and channels may well be still [m/s].
 const SLOWEST_M_S: f64 = 0.5;
 
+/// The channels that are looked at; of a battery's current only whether it sticks.
 const LOOKED_AT: [&str; 6] = [
     "speed_m_s",
     "wheel_speed_m_s",
@@ -60,6 +65,7 @@ pub fn faults(drives: &[Recorded]) -> (Vec<Fault>, Vec<Vec<bool>>) {
     };
     let mut usable: Vec<Vec<bool>> = drives.iter().map(known).collect();
     let mut all = Vec::new();
+    all.extend(stuck(drives, "battery_current_a", &mut usable));
     for name in LOOKED_AT {
         if let Some(fault) = stuck(drives, name, &mut usable) {
             all.push(fault);
@@ -122,6 +128,17 @@ fn usual_length(equal: &[(usize, usize)], samples: usize) -> f64 {
     1.0
 }
 
+/// Whether the noise of a channel moves it all the time, but for a few long stretches.
+fn noisy(equal: &[(usize, usize)], samples: usize) -> bool {
+    let repeats = |long: bool| -> usize {
+        let own =
+            equal.iter().map(|(from, to)| to - from).filter(|length| (*length >= STUCK_SAMPLES) == long);
+        own.sum()
+    };
+    let share = |count: usize| count as f64 / samples as f64;
+    share(repeats(false)) < NOISY && share(repeats(true)) < MOSTLY
+}
+
 /// All but [`UNUSUAL`] of the steps of a channel are smaller.
 fn usual_step(values: &[f64]) -> f64 {
     let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
@@ -135,12 +152,15 @@ fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fa
     let mut stretches = Vec::new();
     let mut runs = 0;
     let mut seconds = 0.0;
+    let mut noisy_everywhere = true;
     for (run, drive) in drives.iter().enumerate() {
         let trace: &Trace = &drive.measured.trace;
         let Some(values) = own(drive, name) else { continue };
         let time_s = trace.time_s();
         let equal = still(values);
-        let enough = HELD * usual_length(&equal, values.len());
+        let own_noise = noisy(&equal, values.len());
+        noisy_everywhere &= own_noise;
+        let enough = if own_noise { 0.0 } else { HELD * usual_length(&equal, values.len()) };
         let leap = LEAP * usual_step(values);
         let long: Vec<(usize, usize)> = equal
             .iter()
@@ -170,8 +190,8 @@ fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fa
             usable[run][from..=to].fill(false);
         }
     }
-    // What every run shows is how the vehicle was driven, not a fault.
-    (runs > 0 && 2 * runs <= drives.len().max(2)).then(|| Fault {
+    // What every run shows is how the vehicle was driven, and no fault, but where noise alone would have moved the channel.
+    (runs > 0 && (noisy_everywhere || 2 * runs <= drives.len().max(2))).then(|| Fault {
         id: "stuck_channel",
         channel: name.to_owned(),
         size: seconds,

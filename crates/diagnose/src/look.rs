@@ -80,7 +80,7 @@ impl Look {
             let id = case.causes[accepted.trial.cause].id;
             let position = self.found.used.iter().position(|used| *used == accepted.trial.columns[0]);
             if let (true, Some(position)) =
-                (["latency", "speed_scale", "force_scale"].contains(&id), position)
+                (["latency", "clock_drift", "speed_scale", "force_scale"].contains(&id), position)
             {
                 let value = self.found.estimate.beta[position];
                 corrections.push(Correction { id, value, accepted: accepted.clone() });

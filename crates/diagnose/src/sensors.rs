@@ -37,6 +37,10 @@ pub fn small_latency_s(case: &Case) -> f64 {
 pub fn petty(case: &Case, id: &str, value: f64) -> bool {
     match id {
         "latency" => value.abs() <= small_latency_s(case),
+        "clock_drift" => {
+            let longest_s = case.runs.iter().map(|run| run.measured.trace.duration_s()).fold(0.0, f64::max);
+            value.abs() * longest_s <= small_latency_s(case)
+        }
         "speed_scale" | "force_scale" => value.abs() <= SMALL_SCALE,
         _ => false,
     }
@@ -130,6 +134,7 @@ fn motion(
         let made = run.acceleration_m_s2[index];
         match id {
             "latency" => interpolate(time_s, &run.acceleration_m_s2, time_s[index] + step) - made,
+            "clock_drift" => interpolate(time_s, &run.acceleration_m_s2, drifted(time_s, index, step)) - made,
             // With a wheel speed beside it, it is that sensor whose scale is wrong.
             "speed_scale" if run.measured.trace.get("wheel_speed_m_s").is_none() => {
                 made / (1.0 + step) - made
@@ -144,6 +149,11 @@ fn motion(
                 + model.effective_mass_kg[index] * faster(index)
         })
         .collect()
+}
+
+/// When a clock that runs apart by a share of the time says what happens at a sample [s].
+fn drifted(time_s: &[f64], index: usize, rate: f64) -> f64 {
+    time_s[index] + rate * (time_s[index] - time_s[0])
 }
 
 /// Whether a latency is one of the force: a speed does not come early, so what drives comes late. Where force is made of a
@@ -169,6 +179,10 @@ fn without(run: &Recorded, id: &str, value: f64, force: bool) -> Option<(&'stati
         "latency" => {
             let speed = trace.get("speed_m_s")?;
             each("speed_m_s", &|index, _| interpolate(time_s, speed, time_s[index] + value))
+        }
+        "clock_drift" => {
+            let speed = trace.get("speed_m_s")?;
+            each("speed_m_s", &|index, _| interpolate(time_s, speed, drifted(time_s, index, value)))
         }
         "speed_scale" if trace.get("wheel_speed_m_s").is_some() => each("wheel_speed_m_s", &scaled),
         "speed_scale" => each("speed_m_s", &scaled),
@@ -196,6 +210,13 @@ fn moved(runs: &[Recorded], id: &str, value: f64, force: bool) -> Result<Vec<Rec
             changed.measured.trace = with_channel(&run.measured.trace, name, samples)?;
             if name == "wheel_speed_m_s" && !run.stands_in.is_empty() {
                 changed.measured.trace = with_stand_in(&changed.measured.trace, &run.stands_in)?;
+            }
+        }
+        if id == "clock_drift" {
+            let time_s = run.measured.trace.time_s();
+            let last_s = time_s[time_s.len() - 1];
+            for (index, compared) in changed.measured.compared.iter_mut().enumerate() {
+                *compared &= drifted(time_s, index, value) <= last_s;
             }
         }
         if id == "latency" {

@@ -195,7 +195,7 @@ fn shift_transient(around: &Around, weight_n: f64, count: usize) -> Cause {
     });
     cause(
         "shift_transient",
-        &[Kind::Motion],
+        MOTION,
         terms,
         "F = F₀ Σ e^(−½((v − v_s)/b)²)",
         &["speed_m_s"],

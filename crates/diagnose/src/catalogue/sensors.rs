@@ -5,6 +5,9 @@ use super::cause::{Cause, cause};
 use super::term::{Term, linear, positive};
 use crate::balance::Kind;
 
+/// Clocks that run apart by more than this share of the time are broken.
+const MOST_DRIFT: f64 = 0.03;
+
 /// Adds the faults that these channels can have.
 pub fn sensors(all: &mut Vec<Cause>, around: &Around) {
     let artefact = |id, balances, term: Term, equation, words, experiment| {
@@ -22,6 +25,18 @@ pub fn sensors(all: &mut Vec<Cause>, around: &Around) {
             )
             // A late signal is not linear in its latency, so it is tried at several.
             .shaped(vec![vec![0.05], vec![0.2], vec![0.6], vec![-0.2]]),
+        );
+        all.push(
+            artefact(
+                "clock_drift",
+                &[Kind::Motion],
+                linear("rate", "1", 0.003).within(-MOST_DRIFT, MOST_DRIFT),
+                "y(t) = x(t − r t)",
+                "a clock of the speed's logger that runs apart from the others",
+                "give both loggers one sharp event at the begin and one at the end of a run",
+            )
+            // As a latency, at several sizes.
+            .shaped(vec![vec![0.001], vec![0.004], vec![0.012], vec![-0.001], vec![-0.004]]),
         );
         all.push(artefact(
             "force_scale",

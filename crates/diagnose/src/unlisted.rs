@@ -144,10 +144,12 @@ fn beside(
     // A law that was found by itself has what stood in for the listed causes beside it: it is looked for once more beside them.
     if let Some(stand) = best.clone() {
         let listed = listed_of(&state, &stand);
+        let terms = state.pieces(&stand) - listed.len();
         if !listed.is_empty()
             && rows <= MANY_ROWS
             && let Some(law) = law(case, system, pool, &listed, &stand.noises, sought)?
             && !is_map(&law)
+            && law.terms <= terms
         {
             let part = add(case, system, pool, &law, sought);
             let state = State { case, system, pool, fit: &case.fit };
@@ -488,6 +490,18 @@ fn enough(fit: &[bool], rows: &[Vec<f64>]) -> Vec<bool> {
     fit.iter().map(take).collect()
 }
 
+/// Mass that rests on the wheels, sample by sample, where that is known to differ; loads of a drive are told by themselves.
+fn masses_kg(case: &Case) -> Option<Vec<Vec<f64>>> {
+    let priors = case.study.priors();
+    let of_run = |run: &crate::recorded::Recorded| {
+        let model = case.study.model(&run.measured, &priors).ok()?;
+        let trace = &run.measured.trace;
+        let carried = |index: usize| trace.get("payload_kg").map_or(0.0, |payload| payload[index]);
+        Some((0..trace.len()).map(|index| model.vehicle.mass_kg + carried(index)).collect())
+    };
+    case.runs.iter().map(of_run).collect()
+}
+
 /// What may stand in a law: of the situation, never made of what is to be explained.
 fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     /// Name, unit, samples of every run where they are known.
@@ -507,7 +521,10 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     };
     let force = kind == Kind::Motion;
     let acceleration = of(&|run| run.motion.slope.clone()).filter(|_| !force);
-    let offered: [Offered; 8] = [
+    let slope = channel("grade").map(|runs: Vec<Vec<f64>>| -> Vec<Vec<f64>> {
+        runs.iter().map(|grade| grade.iter().map(|grade| grade.atan().sin()).collect()).collect()
+    });
+    let offered: [Offered; 10] = [
         ("v", "m/s", of(&|run| run.motion.value.clone())),
         ("acceleration", "m/s²", acceleration),
         ("x", "m", of(&|run| run.position_m.clone())),
@@ -516,6 +533,8 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
         ("kappa", "1/m", channel("curvature_per_m")),
         ("temperature", "°C", channel("air_temperature_c")),
         ("coasting", "1", channel("coasting")),
+        ("slope", "1", slope),
+        ("m", "kg", masses_kg(case)),
     ];
     let whole = |runs: &Vec<Vec<f64>>| runs.iter().flatten().all(|value| value.is_finite());
     let variable = |(name, unit, runs): Offered| {

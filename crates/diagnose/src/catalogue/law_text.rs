@@ -3,7 +3,7 @@
 use crate::balance::Kind;
 
 /// Channels that the variables of a formula are read from.
-pub const CHANNELS: [(&str, &str); 8] = [
+pub const CHANNELS: [(&str, &str); 10] = [
     ("v", "speed_m_s"),
     ("acceleration", "acceleration_m_s2"),
     ("x", "position_m"),
@@ -12,6 +12,8 @@ pub const CHANNELS: [(&str, &str); 8] = [
     ("kappa", "curvature_per_m"),
     ("temperature", "air_temperature_c"),
     ("coasting", "coasting"),
+    ("slope", "grade"),
+    ("m", "payload_kg"),
 ];
 
 /// An equation that was found, as scenarios write it.

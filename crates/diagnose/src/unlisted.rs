@@ -82,7 +82,7 @@ fn beside(
         if start.is_empty() && rows <= MANY_ROWS {
             candidates.extend(with_less(case, system, pool, &law, sought));
         }
-        if is_map(&law) {
+        if is_map(&law) || is_undetermined(&law) {
             continue;
         }
         let mut part = add(case, system, pool, &law, sought);
@@ -93,6 +93,7 @@ fn beside(
             && (rows <= MANY_ROWS || worth(&settled) > worth(&found.stand))
             && let Some(better) = self::law(case, system, pool, &start, &settled.noises, sought)?
             && !is_map(&better)
+            && !is_undetermined(&better)
         {
             law = better;
             part = add(case, system, pool, &law, sought);
@@ -149,6 +150,7 @@ fn beside(
             && rows <= MANY_ROWS
             && let Some(law) = law(case, system, pool, &listed, &stand.noises, sought)?
             && !is_map(&law)
+            && !is_undetermined(&law)
             && law.terms <= terms
         {
             let part = add(case, system, pool, &law, sought);
@@ -179,6 +181,17 @@ fn is_map(law: &Law) -> bool {
     let only_x = |term: &[&str]| !term.is_empty() && term.iter().all(|name| *name == "x");
     let terms = law.variables_of_terms();
     terms.len() > 1 && terms.iter().any(|term| only_x(term))
+}
+
+/// Whether a term of a law may as well be none: several that take each other back say nothing of any.
+fn is_undetermined(law: &Law) -> bool {
+    let amplitude = |name: &str| {
+        name.strip_prefix('a').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
+    };
+    let nothing = |constant: &headland_symbolic::Constant| {
+        constant.sd.is_some_and(|sd| constant.value.abs() < crate::refine::HALF_95 * sd)
+    };
+    law.constants.iter().any(|constant| amplitude(&constant.name) && nothing(constant))
 }
 
 impl State<'_> {
@@ -519,8 +532,9 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
         "x" => BLOCKS * block_s * median(&speeds).abs(),
         _ => 0.0,
     };
-    let force = kind == Kind::Motion;
-    let acceleration = of(&|run| run.motion.slope.clone()).filter(|_| !force);
+    // Where no torque was measured a power is made of the acceleration already.
+    let driven = || case.runs.iter().all(|run| run.measured.trace.get("motor_torque_n_m").is_some());
+    let acceleration = of(&|run| run.motion.slope.clone()).filter(|_| kind == Kind::Battery && driven());
     let slope = channel("grade").map(|runs: Vec<Vec<f64>>| -> Vec<Vec<f64>> {
         runs.iter().map(|grade| grade.iter().map(|grade| grade.atan().sin()).collect()).collect()
     });

@@ -30,6 +30,8 @@ const STUCK_SAMPLES_BEFORE_A_LEAP: usize = 6;
 const HELD: f64 = 8.0;
 /// What is usual: all but this share of the samples.
 const UNUSUAL: f64 = 0.05;
+/// White noise turns back two times of three, and a signal that rises above it less often.
+const TURNS: f64 = 0.25;
 /// A channel whose noise lets no more than this share of its samples repeat the one before is never still by itself,
 const NOISY: f64 = 0.02;
 /// and one that is still for more than this share of the samples is renewed that slowly.
@@ -128,8 +130,18 @@ fn usual_length(equal: &[(usize, usize)], samples: usize) -> f64 {
     1.0
 }
 
-/// Whether the noise of a channel moves it all the time, but for a few long stretches.
-fn noisy(equal: &[(usize, usize)], samples: usize) -> bool {
+/// Whether the noise of a channel moves it to and fro all the time, but for a few long stretches.
+fn noisy(values: &[f64], equal: &[(usize, usize)]) -> bool {
+    let samples = values.len();
+    let moves: Vec<f64> = values
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .filter(|step| step.is_finite() && *step != 0.0)
+        .collect();
+    let turns = moves.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count();
+    if (turns as f64) < TURNS * moves.len() as f64 {
+        return false;
+    }
     let repeats = |long: bool| -> usize {
         let own =
             equal.iter().map(|(from, to)| to - from).filter(|length| (*length >= STUCK_SAMPLES) == long);
@@ -158,7 +170,7 @@ fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fa
         let Some(values) = own(drive, name) else { continue };
         let time_s = trace.time_s();
         let equal = still(values);
-        let own_noise = noisy(&equal, values.len());
+        let own_noise = noisy(values, &equal);
         noisy_everywhere &= own_noise;
         let enough = if own_noise { 0.0 } else { HELD * usual_length(&equal, values.len()) };
         let leap = LEAP * usual_step(values);
@@ -349,4 +361,24 @@ fn lost(drives: &[Recorded]) -> Option<Fault> {
         unit: "1".to_owned(),
         stretches,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Noise about a slow wave, with thirty samples that are all the same.
+    fn stuck_at(from: usize, noise: f64) -> Vec<f64> {
+        let of = |index: usize| (0.02 * index as f64).sin() + noise * ((index * 7919 % 101) as f64 - 50.0);
+        (0..400).map(|index| of(if (from..from + 30).contains(&index) { from } else { index })).collect()
+    }
+
+    #[test]
+    fn only_where_noise_moves_a_channel_is_it_never_still_by_itself() {
+        let told = |values: &[f64]| noisy(values, &still(values));
+        assert!(told(&stuck_at(100, 0.01)));
+        assert!(!told(&stuck_at(100, 0.0)), "a smooth channel may stay where it is");
+        let held: Vec<f64> = stuck_at(500, 0.01).iter().flat_map(|value| [*value; 20]).collect();
+        assert!(!told(&held), "a channel that is renewed slowly is not stuck");
+    }
 }

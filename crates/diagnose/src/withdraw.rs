@@ -6,7 +6,7 @@ use crate::contradiction::withhold;
 use crate::events::Event;
 use crate::faults::Fault;
 use crate::prove::{Proof, prove, told_by};
-use crate::refine::{Cured, Refined, refine, spells};
+use crate::refine::{Refined, refine, spells};
 use crate::search::Found;
 use crate::state::{Part, State};
 use crate::trial::Pool;
@@ -38,28 +38,6 @@ impl Proven {
         let withheld = withhold(case, &mut refined);
         let proof = prove(case, system, &refined, by)?;
         Ok(Self { found, refined, withheld, proof })
-    }
-
-    /// A cause that came to nothing once it was fitted as it is: all of it lies well within what it is known to.
-    fn nothing(&self, case: &Case) -> Option<usize> {
-        /// Half of a 95 % interval is a standard deviation.
-        const WITHIN: f64 = 0.5;
-        let parts = &self.found.stand.parts;
-        let idle = |cured: &Cured| {
-            let linear = cured.cause.terms.iter().zip(&cured.values).filter(|(term, _)| term.linear);
-            let mut own = linear.filter(|(_, (value, ci95))| *value != 0.0 || ci95[0] != ci95[1]).peekable();
-            own.peek().is_some()
-                && own.all(|(_, (value, ci95))| value.abs() < WITHIN * 0.5 * (ci95[1] - ci95[0]))
-        };
-        (0..parts.len()).find(|place| {
-            let trial = &parts[*place].trial;
-            let of = |cured: &&Cured| {
-                cured.events.is_empty()
-                    && cured.accepted.trial.columns == trial.columns
-                    && case.causes[trial.cause].form == Form::Parameters
-            };
-            self.refined.causes.iter().find(of).is_some_and(idle)
-        })
     }
 
     /// Error on runs held out over that of the nominal scenario, where there are any.
@@ -97,10 +75,6 @@ pub fn proven(
         let Some((_, lesser)) = least else { break };
         best = lesser;
         withdrawn = true;
-    }
-    while let Some(place) = best.nothing(case) {
-        let Some(found) = without(case, system, pool, &best.found, place) else { break };
-        best = Proven::of(case, system, pool, found, events, by)?;
     }
     for place in (0..best.found.stand.parts.len()).rev() {
         if let Some(lesser) = without_idle_law(case, system, pool, &best, (events, by), place)? {

@@ -11,6 +11,7 @@ fn situation() -> Situation {
         time_s: 50.0,
         position_m: 120.0,
         speed_m_s: 10.0,
+        acceleration_m_s2: 0.7,
         mass_kg: 2000.0,
         gravity_m_s2: 9.81,
         place: Place {
@@ -44,7 +45,7 @@ fn refused(text: &str) -> String {
 #[test]
 fn every_variable_is_what_its_name_says() {
     let expected =
-        [10.0, 120.0, 50.0, 0.5, 0.02, 0.6, 300.0, -5.0, 2000.0, 9.81, 15_696.0, 1.2, 3.0, 1.0, 0.0];
+        [10.0, 0.7, 120.0, 50.0, 0.5, 0.02, 0.6, 300.0, -5.0, 2000.0, 9.81, 15_696.0, 1.2, 3.0, 1.0, 0.0];
     let expected = expected.into_iter().chain([4.0 * 1f64.cos(), 4.0 * 1f64.sin()]);
     assert_eq!(VARIABLES.len(), expected.clone().count());
     for (variable, expected) in VARIABLES.iter().zip(expected) {
@@ -144,7 +145,10 @@ fn syntax_errors_name_the_character_and_what_was_expected() {
         ("min(f_n)", "`)` at character 8, expected an operator or `,`; `min` has 2 arguments"),
         ("abs(f_n, 2)", "`,` at character 8, expected an operator or `)`; `abs` has 1 argument"),
         ("abs * 2", "`*` at character 5, expected `(` behind the function `abs`"),
-        ("f_n * ρρ + 2", "`ρρ` at character 7, expected a constant of `constants` or one of v x"),
+        (
+            "f_n * ρρ + 2",
+            "`ρρ` at character 7, expected a constant of `constants` or one of v acceleration x",
+        ),
         ("f_n * temperatur", "is `temperature` meant?"),
         ("f_n * ln(-1)", "`ln(-1)` at character 7, which is NaN, expected a finite number"),
         ("f_n / 0", "`f_n / 0` at character 1, which is inf"),
@@ -206,4 +210,17 @@ fn a_value_that_does_not_exist_is_not_made_up() {
     assert!(act::<Expression>(cold, &at).force_n.is_nan());
     assert!(force_n("one_n * sqrt(slope - 1)", "").is_nan());
     assert_eq!(force_n("one_n / (slope - slope)", ""), f64::INFINITY);
+}
+
+#[test]
+fn a_power_may_name_the_acceleration_and_a_force_may_not() {
+    let power = "(auxiliary_power: \"k_kg * abs(acceleration) * v\", constants: {\"k_kg\": 100.0})";
+    assert!((act::<Expression>(power, &situation()).auxiliary_power_w - 700.0).abs() < 1e-9);
+    assert!(build::<Expression>(power).unwrap().follows_acceleration());
+    let force = "(force: \"k_kg * acceleration\", constants: {\"k_kg\": 5.0})";
+    let message = build::<Expression>(force).unwrap_err().to_string();
+    assert!(
+        message.contains("`acceleration` in a force") && message.contains("powers may name it"),
+        "{message}"
+    );
 }

@@ -57,26 +57,25 @@ pub fn unlisted(
     Ok(found)
 }
 
-fn beside(
+/// Sets with a law: by itself, beside what was found, and in place of parts of it.
+fn candidates(
     case: &mut Case,
     system: &System,
     pool: &mut Pool,
-    found: Found,
-    (kind, target): (Kind, Target),
-) -> Result<Found, DiagnoseError> {
+    found: &Found,
+    sought: Sought,
+) -> Result<Vec<Vec<Part>>, DiagnoseError> {
     let listed = found.stand.parts.clone();
     let mut candidates: Vec<Vec<Part>> = Vec::new();
     // Of many rows a formula takes long to find, and where functions are needed none does by itself.
     let functions = listed.iter().any(|part| part.spread.is_some());
     let rows = system.row_count();
-    let per_unit = if kind == Kind::Fuel { fuel_per_watt(case, system)? } else { 1.0 };
-    let sought = Sought { kind, target, per_unit };
     let mut starts = if functions && rows > MANY_ROWS { Vec::new() } else { vec![Vec::new()] };
     if !listed.is_empty() {
         starts.push(listed);
     }
     for start in starts {
-        let Some(mut law) = law(case, system, pool, &start, &found.stand.noises, sought)? else {
+        let Some(mut law) = self::law(case, system, pool, &start, &found.stand.noises, sought)? else {
             continue;
         };
         if start.is_empty() && rows <= MANY_ROWS {
@@ -101,11 +100,25 @@ fn beside(
         candidates.push(with(&part));
         candidates.push(vec![part]);
     }
-    if kind == Kind::Battery
-        && let Some(part) = outgrown(case, pool, &found)
+    if sought.kind == Kind::Battery
+        && let Some(part) = outgrown(case, pool, found)
     {
         candidates.push(found.stand.parts.iter().cloned().chain([part]).collect());
     }
+    Ok(candidates)
+}
+
+fn beside(
+    case: &mut Case,
+    system: &System,
+    pool: &mut Pool,
+    found: Found,
+    (kind, target): (Kind, Target),
+) -> Result<Found, DiagnoseError> {
+    let rows = system.row_count();
+    let per_unit = if kind == Kind::Fuel { fuel_per_watt(case, system)? } else { 1.0 };
+    let sought = Sought { kind, target, per_unit };
+    let candidates = candidates(case, system, pool, &found, sought)?;
     let state = State { case, system, pool, fit: &case.fit };
     let alone = found.tried.first().and_then(|round| round.causes.first()).map_or(0.0, |one| one.2);
     let within = |stand: &Stand| {

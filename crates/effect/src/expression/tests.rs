@@ -218,7 +218,7 @@ fn a_power_may_name_the_acceleration_and_a_force_may_not() {
     assert!((act::<Expression>(power, &situation()).auxiliary_power_w - 700.0).abs() < 1e-9);
     assert!(build::<Expression>(power).unwrap().follows_acceleration());
     let force = "(force: \"k_kg * acceleration\", constants: {\"k_kg\": 5.0})";
-    let message = build::<Expression>(force).unwrap_err().to_string();
+    let message = build::<Expression>(force).unwrap_err();
     assert!(
         message.contains("`acceleration` in a force") && message.contains("powers may name it"),
         "{message}"

@@ -222,22 +222,13 @@ impl Model {
         powers: &mut [f64],
         scratch: &mut Scratch,
     ) -> Instant {
-        let mut acceleration_m_s2 = 0.0;
-        if self.effects.iter().any(|effect| effect.plugin.follows_acceleration()) {
-            let at = (point, command, given);
-            let first = self.balance_at::<false>(
-                at,
-                acceleration_m_s2,
-                layout,
-                slots,
-                states,
-                rates,
-                powers,
-                scratch,
-            );
-            acceleration_m_s2 = first.acceleration_m_s2;
-        }
         let at = (point, command, given);
+        let follows = self.effects.iter().any(|effect| effect.plugin.follows_acceleration());
+        let acceleration_m_s2 = if follows {
+            self.balance_at::<false>(at, 0.0, layout, slots, states, rates, powers, scratch).acceleration_m_s2
+        } else {
+            0.0
+        };
         self.balance_at::<DECIDES>(at, acceleration_m_s2, layout, slots, states, rates, powers, scratch)
     }
 

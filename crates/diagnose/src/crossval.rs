@@ -5,6 +5,7 @@
 //! Source: Stone, *J. R. Stat. Soc. B* 36 (1974) 111, here over whole runs.
 
 use crate::gram::{Column, Whitened};
+use crate::noise::Noises;
 use crate::profile::Widths;
 use crate::state::{Chosen, Part, Stand, State};
 use nalgebra::DVector;
@@ -13,26 +14,55 @@ use rayon::prelude::*;
 impl State<'_> {
     /// By how much ln p of runs that were left out grows with each cause of a set; none with a single run.
     pub fn predicted(&self, stand: &Stand) -> Option<Vec<f64>> {
-        let fitted: Vec<usize> = (0..self.fit.len()).filter(|run| self.fit[*run]).collect();
-        if fitted.len() < 2 {
-            return None;
-        }
-        let full = self.deviance(&stand.parts, stand, &fitted)?;
+        let full = self.deviance(&stand.parts, stand)?;
         let without = |place: usize| {
             let mut parts = stand.parts.clone();
             parts.remove(place);
-            self.deviance(&parts, stand, &fitted)
+            self.deviance(&parts, stand)
         };
         (0..stand.parts.len()).map(|place| Some(0.5 * (without(place)? - full))).collect()
     }
 
+    /// What causes leave of every balance in runs that were each predicted by the others, as mean squares over rows of the
+    /// fitted runs; none with a single run.
+    pub fn foretold(&self, parts: &[Part], noises: &Noises) -> Option<Vec<f64>> {
+        let told = self.told_by_others(parts, noises)?;
+        let balances = self.system.kinds.len();
+        let (mut sums, mut counts) = (vec![0.0; balances], vec![0usize; balances]);
+        for (index, left) in told.iter().flat_map(|one| &one.left) {
+            let balance = self.system.chunks[*index].balance;
+            sums[balance] += left.norm_squared();
+            counts[balance] += left.len();
+        }
+        Some(sums.iter().zip(counts).map(|(sum, count)| sum / count.max(1) as f64).collect())
+    }
+
     /// Sum of the squares of what is left, whitened, of runs that were each predicted by the others.
-    fn deviance(&self, parts: &[Part], stand: &Stand, fitted: &[usize]) -> Option<f64> {
+    fn deviance(&self, parts: &[Part], stand: &Stand) -> Option<f64> {
+        let chunks = &self.system.chunks;
+        let whitened = Whitened::new(chunks, &self.system.residual, &[], &stand.noises)?;
+        let told = self.told_by_others(parts, &stand.noises)?;
+        let of_run = |one: &Told| {
+            let white = |(index, left): &(usize, DVector<f64>)| {
+                whitened.whiteners.white(*index, &chunks[*index], left).norm_squared()
+            };
+            // What is known of the free parameters is known once, not once for every run.
+            one.bent / told.len() as f64 + one.left.iter().map(white).sum::<f64>()
+        };
+        Some(told.iter().map(of_run).sum())
+    }
+
+    /// Every fitted run as the others predict it with some causes.
+    fn told_by_others(&self, parts: &[Part], noises: &Noises) -> Option<Vec<Told>> {
+        let fitted: Vec<usize> = (0..self.fit.len()).filter(|run| self.fit[*run]).collect();
+        if fitted.len() < 2 {
+            return None;
+        }
         let Chosen { columns, sd, places, .. } = self.chosen(parts);
         let chunks = &self.system.chunks;
-        let whitened = Whitened::new(chunks, &self.system.residual, &columns, &stand.noises)?;
+        let whitened = Whitened::new(chunks, &self.system.residual, &columns, noises)?;
         let profiles = self.profiles(parts);
-        let of_run = |out: &usize| -> Option<f64> {
+        let of_run = |out: &usize| -> Option<Told> {
             let mut mask = self.fit.to_vec();
             mask[*out] = false;
             let beta = self.without_functions(&whitened, &profiles, &mask)?.estimate(&places, &sd)?.beta;
@@ -44,11 +74,7 @@ impl State<'_> {
                     profile.rows(self.system, &made)
                 })
                 .collect();
-            // What is known of the free parameters is known once, not once for every run.
-            let bent: f64 =
-                beta.iter().zip(&sd).take(self.pool.nuisance).map(|(value, sd)| (value / sd).powi(2)).sum();
-            let mut sum = bent / fitted.len() as f64;
-            for (index, chunk) in chunks.iter().enumerate().filter(|(_, chunk)| chunk.run == *out) {
+            let of_chunk = |index: usize| {
                 let mut left: DVector<f64> = self.system.residual[index].clone();
                 for (column, value) in columns.iter().zip(beta.iter()) {
                     left -= &column[index] * *value;
@@ -56,11 +82,26 @@ impl State<'_> {
                 for rows in &functions {
                     left -= &rows[index];
                 }
-                sum += whitened.whiteners.white(index, chunk, &left).norm_squared();
-            }
-            Some(sum)
+                (index, left)
+            };
+            Some(Told {
+                bent: beta
+                    .iter()
+                    .zip(&sd)
+                    .take(self.pool.nuisance)
+                    .map(|(value, sd)| (value / sd).powi(2))
+                    .sum(),
+                left: (0..chunks.len()).filter(|index| chunks[*index].run == *out).map(of_chunk).collect(),
+            })
         };
-        let all: Vec<Option<f64>> = fitted.par_iter().map(of_run).collect();
-        all.into_iter().sum()
+        fitted.par_iter().map(of_run).collect()
     }
+}
+
+/// A run as the others predict it.
+struct Told {
+    /// Squares of how far the free parameters had to move, in standard deviations of what is known of them.
+    bent: f64,
+    /// What is left of every chunk of it.
+    left: Vec<(usize, DVector<f64>)>,
 }

@@ -7,6 +7,7 @@
 
 use crate::catalogue::{Cause, Form};
 use crate::gram::Column;
+use crate::mirror::{is_whole, lean};
 use crate::search::Found;
 use crate::state::{Part, State};
 use crate::trial::{Pool, Trial, effect, for_run};
@@ -35,6 +36,12 @@ pub fn bend(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> Res
     };
     for one in &found.accepted {
         consider(&one.trial);
+        // What belongs together is tried with all of it.
+        let cause = &case.causes[one.trial.cause];
+        let all = |trial: &&Trial| trial.cause == one.trial.cause && trial.terms.len() == cause.terms.len();
+        if is_whole(cause) {
+            pool.trials.iter().filter(all).for_each(&mut consider);
+        }
     }
     if let Some(round) = found.tried.first() {
         let greatest = round.causes.first().map_or(0.0, |one| one.2);
@@ -78,7 +85,10 @@ fn bent(
     let (columns, trials) = (pool.columns.len(), pool.trials.len());
     let mut current = trial.clone();
     for round in 0..ROUNDS {
-        let Some(values) = size(pool, &current) else { break };
+        let Some(mut values) = size(pool, &current) else { break };
+        if round == 0 && is_whole(cause) {
+            lean(values.iter_mut());
+        }
         if values
             .iter()
             .zip(&trial.terms)

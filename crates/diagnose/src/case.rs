@@ -66,6 +66,8 @@ pub(crate) struct Case<'a> {
     pub rows: Rows,
     /// What was found so far, where anything was.
     pub so_far: Option<SoFar>,
+    /// Samples at which no channel shows a fault by itself; empty before they were looked for.
+    pub sound: Vec<Vec<bool>>,
     /// Whether each run may be fitted.
     pub fit: Vec<bool>,
     /// Whether any balance can use a run. Effects are reconstructed along the others, and nothing is learned from them.
@@ -112,6 +114,7 @@ impl<'a> Case<'a> {
             nominal: Vec::new(),
             rows: Rows::Few,
             so_far: None,
+            sound: Vec::new(),
             fit: Vec::new(),
             bears: Vec::new(),
             chosen: false,
@@ -147,7 +150,7 @@ impl<'a> Case<'a> {
     }
 
     /// What the nominal model says of the runs, and how it would have accelerated.
-    fn suppose(&mut self) -> Result<(), DiagnoseError> {
+    pub fn suppose(&mut self) -> Result<(), DiagnoseError> {
         self.nominal = self.said(self.study.scenario(), &self.study.priors())?;
         for (run, said) in self.runs.iter_mut().zip(&self.nominal) {
             run.acceleration_m_s2 = run.accelerated_m_s2(&said.resistance_n, &said.effective_mass_kg);

@@ -196,10 +196,14 @@ fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fa
             continue;
         }
         runs += 1;
+        // The motion is smoothed over samples before and after, and what is stuck spoils it there as well.
+        let beside_s = if name.contains("speed") { drive.measured.how.smoothing_s } else { 0.0 };
         for (from, to) in long {
             seconds += time_s[to] - time_s[from];
             stretches.push(place(drive, from, to));
-            usable[run][from..=to].fill(false);
+            let first = time_s.partition_point(|time| *time < time_s[from] - beside_s);
+            let end = time_s.partition_point(|time| *time <= time_s[to] + beside_s);
+            usable[run][first..end].fill(false);
         }
     }
     // What every run shows is how the vehicle was driven, and no fault, but where noise alone would have moved the channel.

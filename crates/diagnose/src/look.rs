@@ -259,6 +259,6 @@ impl State<'_> {
             let Some(next) = next else { break };
             best = next.stand;
         }
-        self.conclude(best, first, before.tried.clone(), needed)
+        self.conclude(best, first, (before.tried.clone(), Vec::new()), needed)
     }
 }

@@ -319,12 +319,16 @@ const WINDOW_S: f64 = 30.0;
 /// Errors of the speed, driven forward with the nominal scenario and with what was found.
 fn speeds(case: &Case, runs: &[Recorded], refined: &Refined) -> Result<Vec<Errors>, DiagnoseError> {
     let rmse = |model: &headland_sim::Model, run: &Recorded, how: &Replay| -> Result<f64, DiagnoseError> {
+        let sound = |index: usize| case.sound.get(run.number).is_none_or(|sound| sound[index]);
         let failed = |error| DiagnoseError::Replay { run: run.measured.id.clone(), error };
         let modelled = replay(model, &run.measured.trace, how).map_err(failed)?.trace;
         let measured = run.measured.trace.get("speed_m_s").unwrap_or(&[]);
-        let speeds = modelled.get("speed_m_s").unwrap_or(&[]).iter().zip(measured);
-        let squares: Vec<f64> =
-            speeds.map(|(one, other)| (one - other).powi(2)).filter(|value| value.is_finite()).collect();
+        let speeds = modelled.get("speed_m_s").unwrap_or(&[]).iter().zip(measured).enumerate();
+        let squares: Vec<f64> = speeds
+            .filter(|(index, _)| sound(*index))
+            .map(|(_, (one, other))| (one - other).powi(2))
+            .filter(|value| value.is_finite())
+            .collect();
         Ok((squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt())
     };
     (0..runs.len())

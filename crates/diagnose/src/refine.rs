@@ -3,6 +3,7 @@
 use crate::catalogue::{Cause, Class, Form, Term, spell};
 use crate::events::{Event, LEAST_GAIN, named};
 use crate::gram::Column;
+use crate::mirror::{self, is_whole};
 use crate::profile::Function;
 use crate::recorded::Recorded;
 use crate::regeneration::limit_w;
@@ -10,7 +11,7 @@ use crate::said::{Said, said};
 use crate::search::{Accepted, Found};
 use crate::trial::{Pool, Trial, for_run};
 use crate::widths::{Widths, widths};
-use crate::{Case, DiagnoseError, System};
+use crate::{Case, DiagnoseError, Kind, System};
 use headland_calibrate::fit::{Estimate, Fit, Parameter, Residuals, fit};
 use headland_scenario::Scenario;
 
@@ -18,6 +19,8 @@ use headland_scenario::Scenario;
 pub const HALF_95: f64 = 1.96;
 /// Nothing is known worse than before; scatter between the runs may widen an interval beyond that, but not by this factor.
 const LOST: f64 = 3.0;
+/// A free parameter that is so many standard deviations from what is known of it was carried off by something else.
+const FAR: f64 = 4.0;
 
 /// A cause with its values.
 #[derive(Clone, Debug)]
@@ -30,6 +33,8 @@ pub struct Cured {
     pub values: Vec<(f64, [f64; 2])>,
     /// Spells in single runs, where it is some.
     pub events: Vec<Event>,
+    /// Values that explain as much as its own, seen in a mirror along the lane; none where there are none.
+    pub mirrored: Option<Vec<f64>>,
 }
 
 /// A free parameter.
@@ -111,8 +116,11 @@ pub fn refine(
     if refined.causes.iter().any(|cured| cured.cause.form == Form::Law) {
         return Ok(refined);
     }
-    let new: Vec<Cured> = physics.iter().map(|place| refined.causes[*place].clone()).collect();
-    let (fitted, slots) = match nonlinear(case, system, pool, found, &new, None) {
+    let mut new: Vec<Cured> = physics.iter().map(|place| refined.causes[*place].clone()).collect();
+    for cured in new.iter_mut().filter(|cured| is_whole(&cured.cause)) {
+        mirror::lean(cured.values.iter_mut().map(|(value, _)| value));
+    }
+    let Fitted { fit: fitted, slots, mut mirrored } = match both_ways(case, system, pool, found, &new, None) {
         Ok(fitted) => fitted,
         Err(DiagnoseError::Interrupted) => return Err(DiagnoseError::Interrupted),
         // Where the fit runs into what the effects refuse, the linear estimate stands.
@@ -125,26 +133,32 @@ pub fn refine(
         .iter()
         .map(|(place, term)| {
             let own = &new[*place];
-            loosely(&own.cause.terms[*term], own.values[*term].0).2
+            loosely(&own.cause, *term, own.values[*term].0).2
         })
         .collect();
-    let of_free = case.study.parameters.iter().map(|one| one.sd.unwrap_or(f64::INFINITY));
-    let all = of_free.chain(of_slots.iter().copied());
     let count = refined.free.len();
-    let of_causes = if fitted.estimates.iter().zip(all).any(|(estimate, sd)| lost(estimate, sd)) {
+    let (of_free, of_causes) = fitted.estimates.split_at(count);
+    let free_lost = of_free.iter().any(|estimate| {
+        estimate.prior_sd.is_some_and(|sd| (estimate.value - estimate.prior).abs() > FAR * sd)
+    });
+    let of_causes = if free_lost || of_causes.iter().zip(&of_slots).any(|(one, sd)| lost(one, *sd)) {
         // What was found is then fitted once more beside the free parameters as they are: its columns were made beside
         // those of the scenario.
         let beside = refined.values();
-        match nonlinear(case, system, pool, found, &new, Some(&beside)) {
-            Ok((fitted, _)) => fitted.estimates,
+        match both_ways(case, system, pool, found, &new, Some(&beside)) {
+            Ok(fitted) => {
+                mirrored = fitted.mirrored;
+                fitted.fit.estimates
+            }
             Err(DiagnoseError::Interrupted) => return Err(DiagnoseError::Interrupted),
             Err(_) => return Ok(refined),
         }
     } else {
-        for (own, estimate) in refined.free.iter_mut().zip(&fitted.estimates[..count]) {
-            (own.value, own.ci95) = (estimate.value, widest(estimate.value, estimate.ci95, own.ci95));
+        for (own, estimate) in refined.free.iter_mut().zip(of_free) {
+            own.value = estimate.value;
+            own.ci95 = no_wider(widest(estimate.value, estimate.ci95, own.ci95), estimate);
         }
-        fitted.estimates[count..].to_vec()
+        of_causes.to_vec()
     };
     if of_causes.iter().zip(&of_slots).any(|(estimate, sd)| lost(estimate, *sd)) {
         return Ok(refined);
@@ -152,6 +166,9 @@ pub fn refine(
     for ((place, term), estimate) in slots.iter().zip(&of_causes) {
         let own = &mut refined.causes[physics[*place]].values[*term];
         *own = (estimate.value, widest(estimate.value, estimate.ci95, own.1));
+    }
+    if let Some((place, values)) = mirrored {
+        refined.causes[physics[place]].mirrored = Some(values);
     }
     Ok(refined)
 }
@@ -161,6 +178,12 @@ pub fn refine(
 fn widest(value: f64, one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
     let half = |ci: [f64; 2]| 0.5 * (ci[1] - ci[0]);
     if half(one) >= half(other) { one } else { [value - half(other), value + half(other)] }
+}
+
+/// The interval of a free parameter no wider than what was known of it before: scatter between runs takes no knowledge away.
+fn no_wider(ci95: [f64; 2], estimate: &Estimate) -> [f64; 2] {
+    let half = HALF_95 * estimate.prior_sd.unwrap_or(f64::INFINITY);
+    if ci95[1] - ci95[0] <= 2.0 * half { ci95 } else { [estimate.value - half, estimate.value + half] }
 }
 
 /// The linear estimate, shapes taken as known.
@@ -184,7 +207,7 @@ fn linear(case: &Case, pool: &Pool, found: &Found, widths: &[Widths]) -> Refined
     for (accepted, widths) in found.accepted.iter().zip(widths) {
         let cause = case.causes[accepted.trial.cause].clone();
         let values = if cause.is_function() { Vec::new() } else { started(case, accepted, found, widths) };
-        causes.push(Cured { cause, accepted: accepted.clone(), values, events: Vec::new() });
+        causes.push(Cured { cause, accepted: accepted.clone(), values, events: Vec::new(), mirrored: None });
     }
     for correction in &case.corrections {
         let Some((_, column)) = pool.corrected.iter().find(|(own, _)| *own == correction.id) else {
@@ -200,14 +223,14 @@ fn linear(case: &Case, pool: &Pool, found: &Found, widths: &[Widths]) -> Refined
         let values = vec![(value, ci95)];
         let accepted = correction.accepted.clone();
         let cause = case.causes[accepted.trial.cause].clone();
-        causes.push(Cured { cause, accepted, values, events: Vec::new() });
+        causes.push(Cured { cause, accepted, values, events: Vec::new(), mirrored: None });
     }
     Refined { causes, free: free.collect(), null_space: Vec::new() }
 }
 
 /// Adds spells in single runs, those of each name as one cause.
 pub fn spells(case: &Case, system: &System, events: &[Event], refined: &mut Refined) {
-    let motion = system.kinds.iter().position(|kind| *kind == crate::Kind::Motion);
+    let motion = system.kinds.iter().position(|kind| *kind == Kind::Motion);
     let Some(balance) = motion else { return };
     for (id, events) in named(&case.runs, events) {
         let limit = if id == "braking" { limit_w(case, &events) } else { None };
@@ -240,19 +263,67 @@ fn spelt(id: &'static str, events: Vec<Event>, balance: usize) -> Cured {
         },
         values: vec![(mean, [mean - HALF_95 * sd, mean + HALF_95 * sd])],
         events,
+        mirrored: None,
     }
 }
 
 /// A parameter of a new cause: which cause, which term.
 type Slot = (usize, usize);
 
-/// What a term may be in a fit, and how far it is from known: value, limits, standard deviation.
-fn loosely(term: &Term, value: f64) -> (f64, (f64, f64), f64) {
+/// What a term of a cause may be in a fit, and how far it is from known: value, limits, standard deviation.
+fn loosely(cause: &Cause, term: usize, value: f64) -> (f64, (f64, f64), f64) {
+    let term = &cause.terms[term];
     if term.linear {
-        return (value.clamp(term.low, term.high), (term.low, term.high), 4.0 * term.scale);
+        let sd = if is_whole(cause) { term.scale } else { 4.0 * term.scale };
+        return (value.clamp(term.low, term.high), (term.low, term.high), sd);
     }
     // A shape is known about as well as its grid is spaced.
     (value, (0.2 * value, 5.0 * value), 0.6 * value.abs())
+}
+
+/// A fit of causes.
+struct Fitted {
+    fit: Fit,
+    slots: Vec<Slot>,
+    /// A cause, and values of it that explain as much.
+    mirrored: Option<(usize, Vec<f64>)>,
+}
+
+/// Fits causes, and those that may be seen in a mirror once more from there: the better one of both.
+fn both_ways(
+    case: &Case,
+    system: &System,
+    pool: &Pool,
+    found: &Found,
+    new: &[Cured],
+    held: Option<&[f64]>,
+) -> Result<Fitted, DiagnoseError> {
+    let (fit, slots) = nonlinear(case, system, pool, found, new, held)?;
+    let own = Fitted { fit, slots, mirrored: None };
+    let place = new.iter().position(|cured| is_whole(&cured.cause));
+    let (Some(place), Some(axis_rad)) = (place, mirror::axis_rad(case)) else { return Ok(own) };
+    let values_of = |fitted: &Fitted| -> Vec<f64> {
+        let count = fitted.fit.estimates.len() - fitted.slots.len();
+        let estimates = fitted.slots.iter().zip(&fitted.fit.estimates[count..]);
+        estimates.filter(|((own, _), _)| *own == place).map(|(_, estimate)| estimate.value).collect()
+    };
+    let mut turned = new.to_vec();
+    let start = mirror::mirrored(&values_of(&own), axis_rad);
+    for (own, value) in turned[place].values.iter_mut().zip(&start) {
+        own.0 = *value;
+    }
+    let (fit, slots) = match nonlinear(case, system, pool, found, &turned, held) {
+        Ok(fitted) => fitted,
+        Err(DiagnoseError::Interrupted) => return Err(DiagnoseError::Interrupted),
+        Err(_) => return Ok(own),
+    };
+    let other = Fitted { fit, slots, mirrored: None };
+    let (mut better, lesser) =
+        if other.fit.cost_after < own.fit.cost_after { (other, own) } else { (own, other) };
+    if lesser.fit.cost_after - better.fit.cost_after < mirror::AS_GOOD {
+        better.mirrored = Some((place, values_of(&lesser)));
+    }
+    Ok(better)
 }
 
 /// Fits causes together with the free parameters, or beside them where they are held.
@@ -272,12 +343,12 @@ fn nonlinear(
         for (index, term) in cured.cause.terms.iter().enumerate() {
             let value = cured.values[index].0;
             let needed = if term.linear {
-                cured.accepted.trial.terms.contains(&index)
+                is_whole(&cured.cause) || cured.accepted.trial.terms.contains(&index)
             } else {
                 value != 0.0 && term.low < term.high
             };
             if needed {
-                let (value, (low, high), sd) = loosely(term, value);
+                let (value, (low, high), sd) = loosely(&cured.cause, index, value);
                 let (from, to) = cured.cause.within(index, &cured.values());
                 let bounds = (low.max(from), high.min(to));
                 slots.push((place, index));
@@ -304,6 +375,7 @@ fn nonlinear(
             let values = small
                 .iter()
                 .fold(residual[index].clone(), |left, (column, size)| left - &column[index] * *size);
+            let values = values * as_heavy(case, system.kind(chunk), chunk.run, &said[chunk.run]);
             let white = match &whiteners {
                 Some(whiteners) => whiteners.white(index, chunk, &values),
                 None => values,
@@ -318,6 +390,20 @@ fn nonlinear(
         Ok(clusters)
     };
     Ok((fit(&parameters, evaluate)?, slots))
+}
+
+/// What makes a residual that of as heavy a vehicle as the nominal one. What is left of the forces is mass times what is left
+/// of the acceleration: a lighter vehicle would have less of it by being lighter, and a fit would take that for the better.
+fn as_heavy(case: &Case, kind: Kind, run: usize, said: &Said) -> f64 {
+    if kind != Kind::Motion {
+        return 1.0;
+    }
+    let mean = |said: &Said| -> f64 {
+        let known = || said.effective_mass_kg.iter().filter(|mass| mass.is_finite());
+        known().sum::<f64>() / known().count() as f64
+    };
+    let ratio = mean(&case.nominal[run]) / mean(said);
+    if ratio.is_finite() { ratio } else { 1.0 }
 }
 
 /// The linear estimate of a cause's parameters, as wide as its shape leaves it.

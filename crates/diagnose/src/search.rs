@@ -3,7 +3,7 @@
 
 use crate::Case;
 use crate::balance::System;
-use crate::catalogue::{Cause, Class, Form};
+use crate::catalogue::Class;
 use crate::contest::Contest;
 use crate::gram::{Column, Estimate, Reduced};
 use crate::noise::{Noises, Shape};
@@ -99,8 +99,6 @@ const DRAWS: u64 = 300;
 const LEAST_EFFECT: f64 = 0.15;
 /// A cause has to be at least this share of what was to be explained in one of its balances, as mean square.
 const LEAST_SHARE: f64 = 0.01;
-/// A squared correlation below which a cause does not stand for another one.
-const UNLIKE: f64 = 0.02;
 /// A formula of this squared correlation with a listed cause is that cause.
 pub const OTHER_WORDS: f64 = 0.97;
 /// Two causes that leave less than this share of the smaller one when they are added cancel each other: neither is there.
@@ -153,14 +151,16 @@ pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]
         }
         others.push(stand);
     }
-    let mut found = state.conclude(best, first, tried, needed)?;
+    let never = (0..case.causes.len()).filter(|cause| banned.contains(&case.causes[*cause].id)).collect();
+    let mut found = state.conclude(best, first, (tried, never), needed)?;
+    found.unproven.retain(|cause| !banned.contains(&case.causes[*cause].id));
     state.sets_as_good(&mut found, &others);
     Some(found)
 }
 
 /// As it was found, but with another set of causes.
 pub fn concluded(state: &State, best: Stand, found: &Found) -> Option<Found> {
-    state.conclude(best, found.first.clone(), found.tried.clone(), found.needed)
+    state.conclude(best, found.first.clone(), (found.tried.clone(), Vec::new()), found.needed)
 }
 
 /// How good a set is, with what every cause more costs.
@@ -191,207 +191,6 @@ impl Contest {
 }
 
 impl State<'_> {
-    /// What a set comes down to, cause by cause.
-    pub fn conclude(&self, best: Stand, first: Stand, tried: Vec<Round>, needed: f64) -> Option<Found> {
-        let best = self.without_needless(best, needed)?;
-        let (best, mut unproven) = self.without_unproven(best)?;
-        let best = self.without_impossible(best, &mut unproven)?;
-        Some(self.found(best, first, (tried, unproven), needed))
-    }
-
-    /// The set without causes that had to be what they cannot be once others were gone; those are told as `unproven`.
-    fn without_impossible(&self, mut best: Stand, unproven: &mut Vec<usize>) -> Option<Stand> {
-        while let Some(place) = self.first_beyond(&best.parts, &best.estimate.beta) {
-            let mut parts = best.parts.clone();
-            unproven.push(parts.remove(place).trial.cause);
-            best = self.settle(&parts, &best.noises)?;
-        }
-        Some(best)
-    }
-
-    /// The set without causes that bring less beside the others than chance would.
-    pub fn without_needless(&self, mut best: Stand, needed: f64) -> Option<Stand> {
-        loop {
-            let lesser = (0..best.parts.len()).filter_map(|place| {
-                let mut parts = best.parts.clone();
-                parts.remove(place);
-                self.settle(&parts, &best.noises)
-            });
-            let Some(top) = lesser.max_by(|one, other| one.score.total_cmp(&other.score)) else {
-                return Some(best);
-            };
-            if best.score - top.score >= needed {
-                return Some(best);
-            }
-            best = top;
-        }
-    }
-
-    /// Other sets that are as good: what they hold otherwise stands beside the cause that it is most like.
-    pub fn sets_as_good(&self, found: &mut Found, others: &[Stand]) {
-        let best = worth(&found.stand);
-        let Some(reduced) = self.reduced(&found.stand.noises, &[]) else { return };
-        let nuisance: Vec<usize> = (0..self.pool.nuisance).collect();
-        for other in others.iter().filter(|other| worth(other) > best - TOLERANCE) {
-            for part in &other.parts {
-                let id = self.id(&part.trial);
-                let named = |one: &Accepted| {
-                    let rival = |rival: &Rival| self.case.causes[rival.cause].id == id;
-                    self.id(&one.trial) == id || one.rivals.iter().any(rival)
-                };
-                // Only where the other set does without some of ours is it an alternative, and only what it has more.
-                let replaced: Vec<usize> = (0..found.accepted.len())
-                    .filter(|place| {
-                        let own = self.id(&found.accepted[*place].trial);
-                        !other.parts.iter().any(|part| self.id(&part.trial) == own)
-                    })
-                    .collect();
-                if found.accepted.iter().any(named) || replaced.is_empty() {
-                    continue;
-                }
-                let like = |place: &usize| {
-                    let columns = &found.accepted[*place].trial.columns;
-                    reduced.squared_correlation(columns, &part.trial.columns, &nuisance, &self.sd())
-                };
-                let likest = replaced.into_iter().map(|place| (place, like(&place)));
-                // What is like none of them explains something else, and a formula that is one of them says it in other words.
-                let law = self.cause(&part.trial).law.is_some();
-                let other_words = |correlation: f64| law && correlation > OTHER_WORDS;
-                let likest =
-                    likest.filter(|(_, correlation)| *correlation > UNLIKE && !other_words(*correlation));
-                if let Some((place, correlation)) = likest.max_by(|one, other| one.1.total_cmp(&other.1)) {
-                    let gain = found.accepted[place].gain + worth(other) - best;
-                    let cause = part.trial.cause;
-                    found.accepted[place].rivals.push(Rival {
-                        cause,
-                        gain,
-                        squared_correlation: correlation,
-                    });
-                }
-            }
-        }
-    }
-
-    /// The set without causes that do not help to predict a run from the others, and what those are. A function of time
-    /// belongs to its own run, one of position to its path, and no other can show it.
-    pub fn without_unproven(&self, mut best: Stand) -> Option<(Stand, Vec<usize>)> {
-        /// Growth of ln p of the runs predicted.
-        const LEAST: f64 = 1.0;
-        let mut out = Vec::new();
-        loop {
-            let Some(gains) = self.predicted(&best) else { return Some((best, out)) };
-            let timed = |place: &usize| match self.cause(&best.parts[*place].trial) {
-                Cause { run: Some(_), .. } | Cause { form: Form::OverTime, .. } => true,
-                Cause { form: Form::OverPosition, .. } => !self.paths_shared(),
-                _ => false,
-            };
-            let worst = (0..gains.len())
-                .filter(|place| !timed(place))
-                .min_by(|one, other| gains[*one].total_cmp(&gains[*other]));
-            let Some(worst) = worst.filter(|place| gains[*place] < LEAST) else { return Some((best, out)) };
-            let mut parts = best.parts.clone();
-            out.push(parts.remove(worst).trial.cause);
-            best = self.settle(&parts, &best.noises)?;
-        }
-    }
-
-    /// What was found, each cause with what it brings beside the others and what could stand in its place.
-    pub fn found(
-        &self,
-        best: Stand,
-        first: Stand,
-        (tried, unproven): (Vec<Round>, Vec<usize>),
-        needed: f64,
-    ) -> Found {
-        let mut parts: Vec<(f64, Part, Vec<Rival>)> = Vec::new();
-        for place in 0..best.parts.len() {
-            let part = best.parts[place].clone();
-            let mut others = best.parts.clone();
-            others.remove(place);
-            let (gain, rivals) = match self.settle(&others, &best.noises) {
-                Some(lesser) => (best.score - lesser.score, self.rivals(&best, &part, &lesser)),
-                None => (needed, Vec::new()),
-            };
-            parts.push((gain, part, rivals));
-        }
-        parts.sort_by(|one, other| other.0.total_cmp(&one.0));
-        let mut accepted = Vec::new();
-        let mut effects = Vec::new();
-        let along = self.functions_along(&best);
-        for (gain, part, rivals) in parts {
-            let rows = best.effect(self, &part);
-            let place = best.parts.iter().position(|own| own.trial.columns == part.trial.columns);
-            // The value that it has everywhere belongs to the function.
-            let even =
-                best.position(part.trial.columns[0]).map_or(0.0, |position| best.estimate.beta[position]);
-            let of = |functions: &[Option<Function>]| {
-                place.and_then(|place| functions.get(place)?.clone()).map(|function| function.raised(even))
-            };
-            let function = of(&best.functions);
-            let mut one = Accepted {
-                balance: self.balance_of(&rows, &best.noises),
-                trial: part.trial,
-                gain,
-                by_chance: needed,
-                rivals,
-                function,
-                along: of(&along),
-            };
-            self.name_by_shape(&mut one);
-            accepted.push(one);
-            effects.push(rows);
-        }
-        Found {
-            tried,
-            unproven,
-            accepted,
-            noises: (first.noises.clone(), best.noises.clone()),
-            used: best.used.clone(),
-            estimate: best.estimate.clone(),
-            left: best.left.clone(),
-            before: first.left.clone(),
-            effects,
-            stand: best,
-            first,
-            needed,
-        }
-    }
-
-    /// The balance in which rows stand out most from its noise.
-    fn balance_of(&self, rows: &Column, noises: &Noises) -> usize {
-        let squares = self.system.mean_squares(rows, self.fit);
-        let strengths = squares.iter().zip(&noises.each).map(|(square, noise)| square / noise.sd().powi(2));
-        let best = strengths.enumerate().max_by(|one, other| one.1.total_cmp(&other.1));
-        best.map_or(0, |(number, _)| number)
-    }
-
-    /// Causes that explain as much in the place of one.
-    fn rivals(&self, best: &Stand, part: &Part, lesser: &Stand) -> Vec<Rival> {
-        let id = self.id(&part.trial);
-        let Some(reduced) = self.reduced(&best.noises, &lesser.parts) else { return Vec::new() };
-        let at_best = Stand { noises: best.noises.clone(), ..lesser.clone() };
-        let mut rivals: Vec<Rival> = Vec::new();
-        for other in self.contest(&at_best, &reduced, &[]) {
-            let Some(own) = other.stand.parts.last() else { continue };
-            let listed = rivals.iter().any(|rival| self.case.causes[rival.cause].id == self.id(&own.trial));
-            if self.id(&own.trial) == id || listed || other.stand.score <= best.score - TOLERANCE {
-                continue;
-            }
-            let correlation = reduced.squared_correlation(
-                &part.trial.columns,
-                &own.trial.columns,
-                &lesser.used,
-                &self.sd(),
-            );
-            rivals.push(Rival {
-                cause: own.trial.cause,
-                gain: other.stand.score - lesser.score,
-                squared_correlation: correlation,
-            });
-        }
-        rivals
-    }
-
     /// The growth of ln p that the best of all trials reaches by chance once in a hundred, if nothing is missing.
     pub fn chance(&self, stand: &Stand, reduced: &Reduced) -> f64 {
         let trials: Vec<&Trial> =
@@ -468,35 +267,6 @@ impl State<'_> {
         let position = part.trial.columns.first().and_then(|column| stand.position(*column));
         let value = position.map_or(0.0, |position| stand.estimate.beta[position]);
         !petty(self.case, self.id(&part.trial), value)
-    }
-
-    /// A function over position that these recordings give to slopes and to soft ground alike: where it rises in places
-    /// above a floor it is told as ground, where it goes both ways as slopes. The other stays named beside it.
-    fn name_by_shape(&self, one: &mut Accepted) {
-        /// So many times higher than deep is 'in places'.
-        const LOPSIDED: f64 = 2.0;
-        let causes: &[Cause] = &self.case.causes;
-        let id = causes[one.trial.cause].id;
-        let twin = match id {
-            "grade" => "soft_ground",
-            "soft_ground" => "grade",
-            _ => return,
-        };
-        let Some(place) = one.rivals.iter().position(|rival| causes[rival.cause].id == twin) else { return };
-        let Some(function) = &one.function else { return };
-        let values: Vec<f64> =
-            function.values.iter().flat_map(|(values, _)| values.iter().copied()).collect();
-        let values = sorted(&values);
-        let [low, middle, high] = [0.02, 0.5, 0.98].map(|share| quantile_of_sorted(&values, share));
-        let ground = high - middle > LOPSIDED * (middle - low);
-        if ground == (id == "soft_ground") {
-            return;
-        }
-        let rival = one.rivals[place].cause;
-        if let Some(trial) = self.pool.trials.iter().find(|trial| trial.cause == rival) {
-            one.rivals[place].cause = one.trial.cause;
-            one.trial = Trial { columns: one.trial.columns.clone(), ..trial.clone() };
-        }
     }
 }
 

@@ -86,6 +86,11 @@ impl Case<'_> {
         Ok(())
     }
 
+    /// Takes what was found out of the model again.
+    pub fn forget(&mut self) -> Result<(), DiagnoseError> {
+        if self.so_far.take().is_some() { self.suppose() } else { Ok(()) }
+    }
+
     fn take_up(&mut self, so_far: SoFar) {
         for (run, acceleration) in self.runs.iter_mut().zip(&so_far.accelerations_m_s2) {
             run.acceleration_m_s2.clone_from(acceleration);

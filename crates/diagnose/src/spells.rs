@@ -28,7 +28,10 @@ pub fn spells(
         return Ok(braked.to_vec());
     }
     let usable = outside(case, sound, &events);
+    // What was found before the spells were known may have stood in for them.
+    case.forget()?;
     look.again(case, &usable)?;
+    look.sensors_first(case)?;
     look.sharpen(case)?;
     events.extend_from_slice(braked);
     events.sort_by(|one, other| one.run.cmp(&other.run).then(one.from_s.total_cmp(&other.from_s)));

@@ -27,8 +27,8 @@ pub fn straying(
     let (first, best) = finer.unwrap_or_else(|| (found.first.clone(), found.stand.clone()));
     let again = || -> Option<Found> {
         let stand = state.further(state.straying(&best)?)?;
-        let (stand, more) = state.without_unproven(state.without_needless(stand, found.needed)?)?;
-        let unproven = found.unproven.iter().copied().chain(more).collect();
+        let mut unproven = found.unproven.clone();
+        let stand = state.needed(stand, &mut unproven, found.needed)?;
         Some(state.found(stand, first.clone(), (found.tried.clone(), unproven), found.needed))
     };
     let as_it_was = || {

@@ -1,12 +1,13 @@
 //! Claims that do not hold where nothing was fitted: what makes runs worse that it never saw is not known.
 
 use crate::balance::Kind;
-use crate::catalogue::Form;
+use crate::catalogue::{Class, Form};
 use crate::contradiction::withhold;
 use crate::events::Event;
 use crate::faults::Fault;
+use crate::mirror::is_whole;
 use crate::prove::{Proof, prove, told_by};
-use crate::refine::{Refined, refine, spells};
+use crate::refine::{Cured, Refined, refine, spells};
 use crate::search::Found;
 use crate::state::{Part, State};
 use crate::trial::Pool;
@@ -82,6 +83,9 @@ pub fn proven(
             withdrawn = true;
         }
     }
+    if let Some(lesser) = without_nothing(case, system, pool, &best, (events, by))? {
+        best = lesser;
+    }
     if withdrawn && best.refined.causes.is_empty() && best.withheld.is_none() && faults.is_empty() {
         best.withheld = Some(nothing_left(case, &best.found));
     }
@@ -111,6 +115,64 @@ fn without_idle_law(
         .zip(without)
         .is_some_and(|(with, without)| with.after > (1.0 - RISES) * without.after.min(with.before));
     Ok(idle.then_some(lesser))
+}
+
+/// What was found without the causes that may as well be none by what the runs say of them together, where nothing that was
+/// fitted is worse without: what each run asks for in its own way is no cause.
+fn without_nothing(
+    case: &Case,
+    system: &System,
+    pool: &mut Pool,
+    best: &Proven,
+    (events, by): (&[Event], Option<Kind>),
+) -> Result<Option<Proven>, DiagnoseError> {
+    let mut lesser: Option<Proven> = None;
+    'asked: loop {
+        let own = lesser.as_ref().unwrap_or(best);
+        // Beside a wind, which no sum of columns draws as it blows, a cause may patch what they lack of it.
+        let windy = own.refined.causes.iter().any(|cured| is_whole(&cured.cause));
+        let doubtful =
+            |cured: &&Cured| is_nothing(cured) || windy && !is_whole(&cured.cause) && is_claim(cured);
+        let mut idle: Vec<&Cured> = own.refined.causes.iter().filter(doubtful).collect();
+        idle.sort_by(|one, other| one.accepted.gain.total_cmp(&other.accepted.gain));
+        for cured in idle {
+            let columns = &cured.accepted.trial.columns;
+            let parts = &own.found.stand.parts;
+            let place = parts.iter().position(|part| part.trial.columns == *columns);
+            let Some(place) = place.filter(|_| parts.len() > 1) else { continue };
+            let state = State { case, system, pool, fit: &case.fit };
+            let mut parts = parts.clone();
+            parts.remove(place);
+            let Some(stand) = state.settle(&parts, &own.found.stand.noises) else { continue };
+            if state.impossible(&stand.parts, &stand.estimate) {
+                continue;
+            }
+            let told = (own.found.tried.clone(), own.found.unproven.clone());
+            let found = state.found(stand, own.found.first.clone(), told, own.found.needed);
+            let other = Proven::of(case, system, pool, found, events, by)?;
+            if other.proof.fitted.after <= (1.0 + RISES) * best.proof.fitted.after {
+                lesser = Some(other);
+                continue 'asked;
+            }
+        }
+        return Ok(lesser);
+    }
+}
+
+/// Whether a cause is one of the world that every run of a path shows.
+fn is_claim(cured: &Cured) -> bool {
+    matches!(cured.cause.form, Form::Parameters | Form::OverPosition)
+        && cured.cause.class != Class::Artefact
+        && cured.events.is_empty()
+}
+
+/// Whether every amplitude of a cause may as well be nought.
+fn is_nothing(cured: &Cured) -> bool {
+    let amplitudes = cured.cause.terms.iter().zip(&cured.values).filter(|(term, _)| term.linear);
+    let mut known = amplitudes.map(|(_, (_, ci95))| ci95).peekable();
+    cured.cause.form == Form::Parameters
+        && known.peek().is_some()
+        && known.all(|ci95| ci95[0] <= 0.0 && ci95[1] >= 0.0)
 }
 
 /// What is said where everything was taken back.

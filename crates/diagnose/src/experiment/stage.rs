@@ -82,6 +82,7 @@ impl<'a> Stage<'a> {
         let mut stage = Case {
             study,
             registry: case.registry,
+            sound: Vec::new(),
             fit: vec![true; runs.len()],
             bears: vec![true; runs.len()],
             raw: runs.clone(),

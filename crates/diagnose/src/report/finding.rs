@@ -244,9 +244,14 @@ fn parameters(cured: &Cured) -> Vec<ParameterReport> {
             let across = (east * sd(north_ci)).hypot(north * sd(east_ci)) / speed.max(1e-9).powi(2);
             // Every direction is within half a turn.
             let half = (HALF_95 * across).min(std::f64::consts::PI);
+            let own = [from - half, from + half];
+            let from_ci = match cured.mirrored.as_deref() {
+                Some([north, east, ..]) => with_image(from, east.atan2(*north), half),
+                _ => own,
+            };
             vec![
                 one("speed_m_s", speed, [(speed - HALF_95 * along).max(0.0), speed + HALF_95 * along], "m/s"),
-                one("from_rad", from, [from - half, from + half], "rad"),
+                one("from_rad", from, from_ci, "rad"),
             ]
         }
         // As `recording.ron` has it: what a channel shows over what it ought to.
@@ -274,6 +279,13 @@ fn parameters(cured: &Cured) -> Vec<ParameterReport> {
             .map(|(term, (value, ci))| one(term.name, *value, *ci, term.unit))
             .collect(),
     }
+}
+
+/// The interval that holds a direction and its image, each with its own: without a step over north, beyond which the same
+/// direction is another number.
+fn with_image(from: f64, image: f64, half: f64) -> [f64; 2] {
+    let image = image.rem_euclid(std::f64::consts::TAU);
+    [from.min(image) - half, from.max(image) + half]
 }
 
 fn function_parameters(cause: &Cause, function: &crate::profile::Function) -> Vec<ParameterReport> {

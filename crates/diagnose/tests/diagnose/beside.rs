@@ -16,6 +16,28 @@ fn a_storm_is_a_wind_of_its_own_size() {
     assert!(held.rmse_after < 2.0 * held.noise, "{held:?}");
 }
 
+/// What blows across the lane shows by how it bends the drag alone, and no other cause patches what columns lack of that; nor
+/// is the vehicle lighter than it is known to be, with which less would be left of any force.
+#[test]
+fn a_wind_across_leaves_the_mass_where_it_is() {
+    let hidden = "wind(speed_m_s: 9.0, from_rad: 2.2), neutral_drag(force_n: 1500.0)";
+    let found = found(&recorded(0.07, hidden), &Options::default()).unwrap();
+    let findings = &found.diagnosis.findings;
+    let ids: Vec<&str> = findings.iter().map(|finding| finding.id.as_str()).collect();
+    assert!(ids.len() == 2 && ids.contains(&"wind"), "{}", found.diagnosis.answer);
+    let drag = findings.iter().find(|one| one.id == "neutral_drag").unwrap();
+    let [low, high] = drag.parameters[0].ci95;
+    assert!(low < 1500.0 && 1500.0 < high && high - low < 600.0, "{:?}", drag.parameters);
+    let wind = findings.iter().find(|one| one.id == "wind").unwrap();
+    for (parameter, truth) in wind.parameters.iter().zip([9.0, 2.2]) {
+        assert!(parameter.ci95[0] < truth && truth < parameter.ci95[1], "{parameter:?}");
+    }
+    let mass = found.diagnosis.calibrated.iter().find(|one| one.name == "mass_kg").unwrap();
+    assert!(mass.ci95[0] < 13_000.0 && 13_000.0 < mass.ci95[1], "{mass:?}");
+    // It is known to 65 kg.
+    assert!(mass.ci95[1] - mass.ci95[0] <= 2.0 * 1.96 * 65.0 + 1e-6, "{mass:?}");
+}
+
 /// On slopes a vehicle accelerates otherwise than its force says, and what turns with the wheels resists just that.
 #[test]
 fn inertia_is_told_beside_slopes() {

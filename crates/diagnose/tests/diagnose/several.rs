@@ -69,6 +69,24 @@ fn a_gear_that_loses_a_little_more_is_calibrated_and_no_loss_is_claimed() {
     assert!(gear.ci95[0] < 0.94 && 0.94 < gear.ci95[1] && gear.ci95[1] - gear.ci95[0] < 0.08, "{gear:?}");
 }
 
+/// A speed that sticks for four seconds leaps when it goes on, and nobody braked there.
+#[test]
+fn where_a_speed_sticks_nobody_brakes() {
+    let stuck = |time_s: f64| (6.0..10.0).contains(&time_s);
+    let recording = changed(&recorded(0.069, ""), "speed_m_s", |value, trace, index| {
+        let times = trace.time_s();
+        let first = times.iter().position(|time| stuck(*time)).unwrap();
+        if stuck(times[index]) { trace.get("speed_m_s").unwrap()[first] } else { value }
+    });
+    let found = found(&recording, &Options::default()).unwrap();
+    let said = &found.diagnosis;
+    assert!(said.findings.iter().all(|finding| finding.id == "stuck_channel"), "{}", said.answer);
+    assert!(!said.findings.is_empty(), "{}", said.answer);
+    // What the sensor did not see is no error of the model.
+    let held = said.fit.held_out.as_ref().unwrap();
+    assert!(held.rmse_after < 3.0 * held.noise, "{held:?}");
+}
+
 #[test]
 fn a_speed_that_is_held_for_some_samples_hides_nothing() {
     let held = changed(&recorded(0.069, "neutral_drag(force_n: 1500.0)"), "speed_m_s", |_, trace, index| {

@@ -1,0 +1,191 @@
+//! What a set of causes comes down to: each is asked whether it is needed, whether one run teaches it to another, whether it
+//! can be what it would have to be, and whether another belongs in its place.
+
+use crate::catalogue::{Cause, Form};
+use crate::contest::Contest;
+use crate::gram::Column;
+use crate::noise::Noises;
+use crate::profile::Function;
+use crate::search::{Accepted, Found, Round};
+use crate::state::{Part, Stand, State};
+
+/// A cause of a set, and what could stand in its place.
+pub struct Side {
+    /// The cause.
+    pub part: Part,
+    /// The set without it, where that can be estimated.
+    pub lesser: Option<Stand>,
+    /// The set with another cause in its place, the best first; its own is among them.
+    pub contests: Vec<Contest>,
+}
+
+/// What a set of causes was asked of before: what was tried, and what the runs do not teach each other.
+pub type Before = (Vec<Round>, Vec<usize>);
+
+/// So many causes are exchanged one after the other.
+const EXCHANGES: usize = 3;
+
+impl State<'_> {
+    /// What a set comes down to, cause by cause. What is in the place of another cause is exchanged for it, but for none of
+    /// those that the runs do not teach each other.
+    pub fn conclude(&self, best: Stand, first: Stand, before: Before, needed: f64) -> Option<Found> {
+        let (tried, mut unproven) = before;
+        let mut best = self.needed(best, &mut unproven, needed)?;
+        let mut sides = self.sides(&best);
+        for _ in 0..EXCHANGES {
+            let Some(other) = self.exchanged(&best, &sides, &unproven) else { break };
+            best = self.needed(other, &mut unproven, needed)?;
+            sides = self.sides(&best);
+        }
+        Some(self.told((best, sides), first, (tried, unproven), needed))
+    }
+
+    /// The set without the causes that it does without; those that no run teaches another, or that would have to be what they
+    /// cannot be, are `unproven`.
+    pub fn needed(&self, best: Stand, unproven: &mut Vec<usize>, needed: f64) -> Option<Stand> {
+        let best = self.without_needless(best, needed)?;
+        let (best, more) = self.without_unproven(best)?;
+        unproven.extend(more);
+        self.without_impossible(best, unproven)
+    }
+
+    /// The set without causes that had to be what they cannot be once others were gone; those are told as `unproven`.
+    fn without_impossible(&self, mut best: Stand, unproven: &mut Vec<usize>) -> Option<Stand> {
+        while let Some(place) = self.first_beyond(&best.parts, &best.estimate.beta) {
+            let mut parts = best.parts.clone();
+            unproven.push(parts.remove(place).trial.cause);
+            best = self.settle(&parts, &best.noises)?;
+        }
+        Some(best)
+    }
+
+    /// The set without causes that bring less beside the others than chance would.
+    pub fn without_needless(&self, mut best: Stand, needed: f64) -> Option<Stand> {
+        loop {
+            let lesser = (0..best.parts.len()).filter_map(|place| {
+                let mut parts = best.parts.clone();
+                parts.remove(place);
+                self.settle(&parts, &best.noises)
+            });
+            let Some(top) = lesser.max_by(|one, other| one.score.total_cmp(&other.score)) else {
+                return Some(best);
+            };
+            if best.score - top.score >= needed {
+                return Some(best);
+            }
+            best = top;
+        }
+    }
+
+    /// The set without causes that do not help to predict a run from the others, and what those are. A function of time
+    /// belongs to its own run, one of position to its path, and no other can show it.
+    pub fn without_unproven(&self, mut best: Stand) -> Option<(Stand, Vec<usize>)> {
+        /// Growth of ln p of the runs predicted.
+        const LEAST: f64 = 1.0;
+        let mut out = Vec::new();
+        loop {
+            let Some(gains) = self.predicted(&best) else { return Some((best, out)) };
+            let timed = |place: &usize| match self.cause(&best.parts[*place].trial) {
+                Cause { run: Some(_), .. } | Cause { form: Form::OverTime, .. } => true,
+                Cause { form: Form::OverPosition, .. } => !self.paths_shared(),
+                _ => false,
+            };
+            let worst = (0..gains.len())
+                .filter(|place| !timed(place))
+                .min_by(|one, other| gains[*one].total_cmp(&gains[*other]));
+            let Some(worst) = worst.filter(|place| gains[*place] < LEAST) else { return Some((best, out)) };
+            let mut parts = best.parts.clone();
+            out.push(parts.remove(worst).trial.cause);
+            best = self.settle(&parts, &best.noises)?;
+        }
+    }
+
+    /// What was found, each cause with what it brings beside the others and what could stand in its place.
+    pub fn found(
+        &self,
+        best: Stand,
+        first: Stand,
+        (tried, unproven): (Vec<Round>, Vec<usize>),
+        needed: f64,
+    ) -> Found {
+        let sides = self.sides(&best);
+        self.told((best, sides), first, (tried, unproven), needed)
+    }
+
+    /// What a set of causes is beside the others and beside those that could stand in the place of each.
+    fn sides(&self, best: &Stand) -> Vec<Side> {
+        let of = |place: usize| {
+            let part = best.parts[place].clone();
+            let mut others = best.parts.clone();
+            others.remove(place);
+            let lesser = self.settle(&others, &best.noises);
+            let reduced = self.reduced(&best.noises, &others);
+            let contests = lesser.as_ref().zip(reduced).map(|(lesser, reduced)| {
+                self.contest(&Stand { noises: best.noises.clone(), ..lesser.clone() }, &reduced, &[])
+            });
+            Side { part, lesser, contests: contests.unwrap_or_default() }
+        };
+        (0..best.parts.len()).map(of).collect()
+    }
+
+    /// What was found, as it is told.
+    fn told(
+        &self,
+        (best, mut sides): (Stand, Vec<Side>),
+        first: Stand,
+        (tried, unproven): (Vec<Round>, Vec<usize>),
+        needed: f64,
+    ) -> Found {
+        let gain = |side: &Side| side.lesser.as_ref().map_or(needed, |lesser| best.score - lesser.score);
+        sides.sort_by(|one, other| gain(other).total_cmp(&gain(one)));
+        let mut accepted = Vec::new();
+        let mut effects = Vec::new();
+        let along = self.functions_along(&best);
+        for side in &sides {
+            let part = &side.part;
+            let rows = best.effect(self, part);
+            let place = best.parts.iter().position(|own| own.trial.columns == part.trial.columns);
+            // The value that it has everywhere belongs to the function.
+            let even =
+                best.position(part.trial.columns[0]).map_or(0.0, |position| best.estimate.beta[position]);
+            let of = |functions: &[Option<Function>]| {
+                place.and_then(|place| functions.get(place)?.clone()).map(|function| function.raised(even))
+            };
+            let function = of(&best.functions);
+            let mut one = Accepted {
+                balance: self.balance_of(&rows, &best.noises),
+                trial: part.trial.clone(),
+                gain: gain(side),
+                by_chance: needed,
+                rivals: self.rivals(&best, side),
+                function,
+                along: of(&along),
+            };
+            self.name_by_shape(&mut one);
+            accepted.push(one);
+            effects.push(rows);
+        }
+        Found {
+            tried,
+            unproven,
+            accepted,
+            noises: (first.noises.clone(), best.noises.clone()),
+            used: best.used.clone(),
+            estimate: best.estimate.clone(),
+            left: best.left.clone(),
+            before: first.left.clone(),
+            effects,
+            stand: best,
+            first,
+            needed,
+        }
+    }
+
+    /// The balance in which rows stand out most from its noise.
+    fn balance_of(&self, rows: &Column, noises: &Noises) -> usize {
+        let squares = self.system.mean_squares(rows, self.fit);
+        let strengths = squares.iter().zip(&noises.each).map(|(square, noise)| square / noise.sd().powi(2));
+        let best = strengths.enumerate().max_by(|one, other| one.1.total_cmp(&other.1));
+        best.map_or(0, |(number, _)| number)
+    }
+}

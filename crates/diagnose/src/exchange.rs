@@ -1,0 +1,44 @@
+//! Causes that stand where another one belongs: a set grows one cause after the other, and what was taken first to stand for
+//! several is not the best of them once the others are there.
+
+use crate::catalogue::{Cause, Form};
+use crate::conclude::Side;
+use crate::search::{TOLERANCE, rank};
+use crate::state::{Part, Stand, State};
+
+impl State<'_> {
+    /// The set with that cause exchanged for which another one says most more in its place; or for the plain value of what
+    /// was a function, where that says as much. None where every cause is where it belongs.
+    pub fn exchanged(&self, best: &Stand, sides: &[Side], banned: &[usize]) -> Option<Stand> {
+        let law = |part: &Part| self.cause(&part.trial).law.is_some();
+        if best.parts.iter().any(law) {
+            return None;
+        }
+        let more = |side: &Side| -> Option<(f64, Stand)> {
+            let own = self.cause(&side.part.trial);
+            let of = |stand: &Stand| -> Option<f64> {
+                let part = stand.parts.last()?;
+                let cause = self.cause(&part.trial);
+                let id = |number: &usize| self.case.causes[*number].id;
+                if cause.id == own.id || law(part) || banned.iter().any(|one| id(one) == cause.id) {
+                    return None;
+                }
+                let needed = if is_plain(cause, &side.part, own) { -TOLERANCE } else { TOLERANCE };
+                Some(rank(stand, self) - best.score - needed).filter(|more| *more > 0.0)
+            };
+            let all = side.contests.iter().filter_map(|one| Some((of(&one.stand)?, &one.stand)));
+            let able = all.filter(|(_, stand)| self.sensible(stand));
+            let top = able.max_by(|one, other| one.0.total_cmp(&other.0));
+            top.map(|(more, stand)| (more, stand.clone()))
+        };
+        let best = sides.iter().filter_map(more).max_by(|one, other| one.0.total_cmp(&other.0));
+        best.map(|(_, stand)| stand)
+    }
+}
+
+/// Whether a cause is the plain value of what a part has as a function.
+fn is_plain(cause: &Cause, gone: &Part, own: &Cause) -> bool {
+    gone.spread.is_some()
+        && cause.form == Form::Parameters
+        && own.even().is_some_and(|(even, _)| even == cause.id && even != own.id)
+}

@@ -1,0 +1,81 @@
+//! A wind across a lane: whether it blows from the left or from the right is the same to what was driven there and back, so
+//! there are two winds that explain as much, one the other's image in a mirror along the lane.
+
+use crate::Case;
+use crate::catalogue::Cause;
+use crate::recorded::SLOWEST_M_S;
+
+/// A sum of squares within this of the least one is as good: 95 % of a chi-square of one degree of freedom.
+pub const AS_GOOD: f64 = 3.84;
+/// A wind along a lane is the top of a hill for what blows across it, which no fit leaves by itself: it begins with this share
+/// of the other part.
+const LEAN: f64 = 0.5;
+/// Runs go along one line where the resultant of their doubled headings is longer than this.
+const STRAIGHT: f64 = 0.9;
+
+/// Whether the parts of a cause are one thing seen from two sides, so that one which the data do not need is not nought but
+/// unknown.
+pub fn is_whole(cause: &Cause) -> bool {
+    cause.id == "wind"
+}
+
+/// Gives a part that the data did not ask for a value to begin with.
+pub fn lean<'a>(values: impl Iterator<Item = &'a mut f64>) {
+    let mut values: Vec<&mut f64> = values.collect();
+    let most = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    for own in values.iter_mut().filter(|own| own.abs() < LEAN * most) {
+        **own = (LEAN * most).copysign(**own);
+    }
+}
+
+/// The line along which all runs went, clockwise from north [rad]; none where they went in more directions.
+pub fn axis_rad(case: &Case) -> Option<f64> {
+    let (mut cosine, mut sine, mut count) = (0.0, 0.0, 0.0);
+    let priors = case.study.priors();
+    for run in &case.runs {
+        let headings = if let Some(recorded) = run.measured.trace.get("heading_rad") {
+            recorded.to_vec()
+        } else {
+            let terrain = case.study.model(&run.measured, &priors).ok()?.terrain;
+            run.position_m.iter().map(|position| terrain.at(*position).heading_rad).collect()
+        };
+        let moving = run.motion.value.iter().zip(&headings).filter(|(speed, _)| **speed > SLOWEST_M_S);
+        for (_, heading) in moving.filter(|(_, heading)| heading.is_finite()) {
+            cosine += (2.0 * heading).cos();
+            sine += (2.0 * heading).sin();
+            count += 1.0;
+        }
+    }
+    (count > 0.0 && f64::hypot(cosine, sine) > STRAIGHT * count).then(|| 0.5 * sine.atan2(cosine))
+}
+
+/// A wind, north and east, in a mirror along a line.
+pub fn mirrored(values: &[f64], axis_rad: f64) -> Vec<f64> {
+    let [north, east, ..] = *values else { return values.to_vec() };
+    let (cosine, sine) = ((2.0 * axis_rad).cos(), (2.0 * axis_rad).sin());
+    vec![cosine * north + sine * east, sine * north - cosine * east]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_not_asked_for_begins_away_from_nought() {
+        let mut values = [-6.0, 0.0];
+        lean(values.iter_mut());
+        assert_eq!(values, [-6.0, 3.0]);
+        lean(values.iter_mut());
+        assert_eq!(values, [-6.0, 3.0], "what leans already stays");
+    }
+
+    /// Along a lane to the north-east a wind from the north is one from the east; twice is the wind itself.
+    #[test]
+    fn a_mirror_keeps_what_blows_along_and_turns_what_blows_across() {
+        let axis = std::f64::consts::FRAC_PI_4;
+        let image = mirrored(&[3.0, 0.0], axis);
+        assert!(image[0].abs() < 1e-12 && (image[1] - 3.0).abs() < 1e-12);
+        let twice = mirrored(&mirrored(&[3.0, -1.0], 0.3), 0.3);
+        assert!((twice[0] - 3.0).abs() < 1e-12 && (twice[1] + 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,113 @@
+//! What could stand in the place of a cause: other causes, other sets, and the same function by another name.
+
+use crate::catalogue::Cause;
+use crate::conclude::Side;
+use crate::search::{Accepted, Found, OTHER_WORDS, Rival, TOLERANCE, worth};
+use crate::state::{Stand, State};
+use crate::trial::Trial;
+use headland_calibrate::statistics::{quantile_of_sorted, sorted};
+
+/// A squared correlation below which a cause does not stand for another one.
+const UNLIKE: f64 = 0.02;
+
+impl State<'_> {
+    /// Causes that explain as much in the place of one.
+    pub fn rivals(&self, best: &Stand, side: &Side) -> Vec<Rival> {
+        let (id, Some(lesser)) = (self.id(&side.part.trial), &side.lesser) else { return Vec::new() };
+        let Some(reduced) = self.reduced(&best.noises, &lesser.parts) else { return Vec::new() };
+        let mut rivals: Vec<Rival> = Vec::new();
+        for other in &side.contests {
+            let Some(own) = other.stand.parts.last() else { continue };
+            let listed = rivals.iter().any(|rival| self.case.causes[rival.cause].id == self.id(&own.trial));
+            if self.id(&own.trial) == id || listed || other.stand.score <= best.score - TOLERANCE {
+                continue;
+            }
+            let correlation = reduced.squared_correlation(
+                &side.part.trial.columns,
+                &own.trial.columns,
+                &lesser.used,
+                &self.sd(),
+            );
+            rivals.push(Rival {
+                cause: own.trial.cause,
+                gain: other.stand.score - lesser.score,
+                squared_correlation: correlation,
+            });
+        }
+        rivals
+    }
+
+    /// Other sets that are as good: what they hold otherwise stands beside the cause that it is most like.
+    pub fn sets_as_good(&self, found: &mut Found, others: &[Stand]) {
+        let best = worth(&found.stand);
+        let Some(reduced) = self.reduced(&found.stand.noises, &[]) else { return };
+        let nuisance: Vec<usize> = (0..self.pool.nuisance).collect();
+        for other in others.iter().filter(|other| worth(other) > best - TOLERANCE) {
+            for part in &other.parts {
+                let id = self.id(&part.trial);
+                let named = |one: &Accepted| {
+                    let rival = |rival: &Rival| self.case.causes[rival.cause].id == id;
+                    self.id(&one.trial) == id || one.rivals.iter().any(rival)
+                };
+                // Only where the other set does without some of ours is it an alternative, and only what it has more.
+                let replaced: Vec<usize> = (0..found.accepted.len())
+                    .filter(|place| {
+                        let own = self.id(&found.accepted[*place].trial);
+                        !other.parts.iter().any(|part| self.id(&part.trial) == own)
+                    })
+                    .collect();
+                if found.accepted.iter().any(named) || replaced.is_empty() {
+                    continue;
+                }
+                let like = |place: &usize| {
+                    let columns = &found.accepted[*place].trial.columns;
+                    reduced.squared_correlation(columns, &part.trial.columns, &nuisance, &self.sd())
+                };
+                let likest = replaced.into_iter().map(|place| (place, like(&place)));
+                // What is like none of them explains something else, and a formula that is one of them says it in other words.
+                let law = self.cause(&part.trial).law.is_some();
+                let other_words = |correlation: f64| law && correlation > OTHER_WORDS;
+                let likest =
+                    likest.filter(|(_, correlation)| *correlation > UNLIKE && !other_words(*correlation));
+                if let Some((place, correlation)) = likest.max_by(|one, other| one.1.total_cmp(&other.1)) {
+                    let gain = found.accepted[place].gain + worth(other) - best;
+                    let cause = part.trial.cause;
+                    found.accepted[place].rivals.push(Rival {
+                        cause,
+                        gain,
+                        squared_correlation: correlation,
+                    });
+                }
+            }
+        }
+    }
+
+    /// A function over position that these recordings give to slopes and to soft ground alike: where it rises in places
+    /// above a floor it is told as ground, where it goes both ways as slopes. The other stays named beside it.
+    pub fn name_by_shape(&self, one: &mut Accepted) {
+        /// So many times higher than deep is 'in places'.
+        const LOPSIDED: f64 = 2.0;
+        let causes: &[Cause] = &self.case.causes;
+        let id = causes[one.trial.cause].id;
+        let twin = match id {
+            "grade" => "soft_ground",
+            "soft_ground" => "grade",
+            _ => return,
+        };
+        let Some(place) = one.rivals.iter().position(|rival| causes[rival.cause].id == twin) else { return };
+        let Some(function) = &one.function else { return };
+        let values: Vec<f64> =
+            function.values.iter().flat_map(|(values, _)| values.iter().copied()).collect();
+        let values = sorted(&values);
+        let [low, middle, high] = [0.02, 0.5, 0.98].map(|share| quantile_of_sorted(&values, share));
+        let ground = high - middle > LOPSIDED * (middle - low);
+        if ground == (id == "soft_ground") {
+            return;
+        }
+        let rival = one.rivals[place].cause;
+        if let Some(trial) = self.pool.trials.iter().find(|trial| trial.cause == rival) {
+            one.rivals[place].cause = one.trial.cause;
+            one.trial = Trial { columns: one.trial.columns.clone(), ..trial.clone() };
+        }
+    }
+}

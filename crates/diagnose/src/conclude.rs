@@ -6,6 +6,7 @@ use crate::contest::Contest;
 use crate::gram::Column;
 use crate::noise::Noises;
 use crate::profile::Function;
+use crate::rivals::twin;
 use crate::search::{Accepted, Found, Round};
 use crate::state::{Part, Stand, State};
 
@@ -123,9 +124,29 @@ impl State<'_> {
             let contests = lesser.as_ref().zip(reduced).map(|(lesser, reduced)| {
                 self.contest(&Stand { noises: best.noises.clone(), ..lesser.clone() }, &reduced, &[])
             });
-            Side { part, lesser, contests: contests.unwrap_or_default() }
+            let mut contests = contests.unwrap_or_default();
+            contests.extend(self.twin(best, place));
+            Side { part, lesser, contests }
         };
         (0..best.parts.len()).map(of).collect()
+    }
+
+    /// The set with a function of the path by its other name, spread as it is: slopes where it has softer ground, and softer
+    /// ground where it has slopes. A search spreads each as suits it best beside the noise that it starts with, and may end
+    /// elsewhere.
+    fn twin(&self, best: &Stand, place: usize) -> Option<Contest> {
+        let part = &best.parts[place];
+        let twin = twin(self.id(&part.trial)).filter(|_| part.spread.is_some())?;
+        let trial = self.pool.trials.iter().find(|trial| {
+            let cause = self.cause(trial);
+            cause.is_function() && cause.id == twin
+        })?;
+        let mut parts = best.parts.clone();
+        let other = Part { trial: trial.clone(), ..parts.remove(place) };
+        parts.push(other);
+        let stand = self.settle(&parts, &best.noises)?;
+        let possible = !self.impossible(&stand.parts, &stand.estimate) && self.functions_possible(&stand);
+        possible.then_some(Contest { stand })
     }
 
     /// What was found, as it is told.

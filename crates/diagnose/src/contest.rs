@@ -114,7 +114,7 @@ impl State<'_> {
             cause.is_function()
                 && !(cause.by_run && many)
                 && !taken.contains(&cause.id)
-                && self.apart(trial, &stand.parts)
+                && self.fits_beside(trial, &stand.parts)
         });
         let quiet = self.quiet(stand);
         let starts: Vec<(&Trial, &Noises)> =
@@ -183,10 +183,20 @@ impl State<'_> {
         let chunks = &self.system.chunks;
         let whitened = Whitened::new(chunks, &self.system.residual, &columns, noises)?;
         let profile = self.profile(&part.trial);
-        let without = self.without_functions(&whitened, &self.profiles(&stand.parts), self.fit)?;
+        let others = self.profiles(&stand.parts);
+        // What shares no rows with it is eliminated once.
+        let apart = self.apart(&part.trial, &stand.parts);
+        let without = if apart { Some(self.without_functions(&whitened, &others, self.fit)?) } else { None };
         let evidence = |spread: &Spread| {
-            let mut reduced = without.clone();
-            profile.take(&whitened, chunks, self.fit, spread, &mut reduced)?;
+            let reduced = if let Some(without) = &without {
+                let mut reduced = without.clone();
+                profile.take(&whitened, chunks, self.fit, spread, &mut reduced)?;
+                reduced
+            } else {
+                let mut profiles = self.profiles(&stand.parts);
+                profiles.push(Some((self.profile(&part.trial), spread.clone())));
+                self.without_functions(&whitened, &profiles, self.fit)?
+            };
             Some(reduced.estimate(&places, &sd)?.log_evidence)
         };
         let lengths: &[f64] = match cause.form {

@@ -66,13 +66,11 @@ impl State<'_> {
             let mut mask = self.fit.to_vec();
             mask[*out] = false;
             let beta = self.without_functions(&whitened, &profiles, &mask)?.estimate(&places, &sd)?.beta;
+            let made = self.functions_of(&whitened, &profiles, &mask, &beta, Widths::Left)?;
             let functions: Vec<Column> = profiles
                 .iter()
-                .flatten()
-                .map(|(profile, spread)| {
-                    let made = profile.function(&whitened, chunks, &mask, spread, &beta, Widths::Left);
-                    profile.rows(self.system, &made)
-                })
+                .zip(&made)
+                .filter_map(|(one, made)| Some(one.as_ref()?.0.rows(self.system, made.as_ref()?)))
                 .collect();
             let of_chunk = |index: usize| {
                 let mut left: DVector<f64> = self.system.residual[index].clone();

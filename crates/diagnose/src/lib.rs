@@ -9,6 +9,7 @@
 
 #![allow(clippy::result_large_err, reason = "a diagnosis fails once, not in a loop")]
 
+mod abreast;
 mod balance;
 mod band;
 mod bend;

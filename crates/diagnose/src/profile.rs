@@ -118,6 +118,16 @@ impl<'a> Profile<'a> {
         system.chunks.iter().enumerate().map(of_chunk).collect()
     }
 
+    /// Whether the function does anything in a chunk.
+    pub fn touches(&self, chunk: usize) -> bool {
+        self.signature[chunk].iter().any(|value| *value != 0.0)
+    }
+
+    /// Whether another function acts on some of its rows.
+    pub fn shares_rows(&self, other: &Profile) -> bool {
+        (0..self.signature.len()).any(|chunk| self.touches(chunk) && other.touches(chunk))
+    }
+
     /// Longest stretch that a group covers [m or s].
     pub fn longest(&self) -> f64 {
         self.extents.iter().map(|(from, to)| to - from).fold(0.0, f64::max)
@@ -158,7 +168,7 @@ impl<'a> Profile<'a> {
     }
 
     /// Eliminates the function from products that were made already. Functions that are eliminated one after the other
-    /// must act on different rows.
+    /// must act on different rows; others are eliminated [`crate::abreast`].
     pub fn take(
         &self,
         whitened: &Whitened,
@@ -240,7 +250,7 @@ impl<'a> Profile<'a> {
         let own: Vec<usize> = (0..chunks.len())
             .filter(|index| fit[chunks[*index].run] && self.group_of[chunks[*index].run] == number)
             // Balances that the cause does not touch say nothing of it.
-            .filter(|index| self.signature[*index].iter().any(|value| *value != 0.0))
+            .filter(|index| self.touches(*index))
             .collect();
         // Whitened rows know all knots of their chunk, so the widest chunk makes the band.
         let reach =
@@ -268,7 +278,7 @@ impl<'a> Profile<'a> {
     }
 
     /// Signature times hat functions, for the knots that a chunk touches.
-    fn basis(&self, index: usize, chunk: &Chunk, group: &Group) -> (usize, DMatrix<f64>) {
+    pub fn basis(&self, index: usize, chunk: &Chunk, group: &Group) -> (usize, DMatrix<f64>) {
         let at = &self.at[index];
         let (low, high) = self.touched(index, group);
         let mut basis = DMatrix::zeros(chunk.rows.len(), high - low + 1);
@@ -355,23 +365,29 @@ impl Spread {
     }
 }
 
-/// The prior's precision, in a band that reaches at least so far.
-fn precision(number: usize, group: &Group, spread: &Spread, reach: usize) -> Band {
+/// What the prior's precision is made of: row, column (not right of the diagonal), and what is added there.
+pub fn precision_entries(number: usize, group: &Group, spread: &Spread) -> Vec<(usize, usize, f64)> {
     let phi = forgetting(group, spread);
     let usual = innovation(group, spread);
-    let mut band = Band::zeros(group.count, reach.max(1));
-    band.add(0, 0, 1.0 / (spread.size * spread.size));
+    let mut all = vec![(0, 0, 1.0 / (spread.size * spread.size))];
     for row in 1..group.count {
         let scale = spread.weight(number, row - 1) / usual;
-        band.add(row, row, scale);
-        band.add(row, row - 1, -scale * phi);
-        band.add(row - 1, row - 1, scale * phi * phi);
+        all.extend([(row, row, scale), (row, row - 1, -scale * phi), (row - 1, row - 1, scale * phi * phi)]);
+    }
+    all
+}
+
+/// The prior's precision, in a band that reaches at least so far.
+fn precision(number: usize, group: &Group, spread: &Spread, reach: usize) -> Band {
+    let mut band = Band::zeros(group.count, reach.max(1));
+    for (row, column, value) in precision_entries(number, group, spread) {
+        band.add(row, column, value);
     }
     band
 }
 
 /// ln |P| in closed form, and what a bound of the prior is below it, twice.
-fn log_precision(number: usize, group: &Group, spread: &Spread) -> f64 {
+pub fn log_precision(number: usize, group: &Group, spread: &Spread) -> f64 {
     let increments = group.count - 1;
     let weights: f64 = (0..increments).map(|increment| spread.weight(number, increment).ln()).sum();
     let bound = spread.jumps.as_ref().map_or(0.0, |jumps| jumps.bound(number, increments));

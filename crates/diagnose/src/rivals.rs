@@ -10,6 +10,15 @@ use headland_calibrate::statistics::{quantile_of_sorted, sorted};
 /// A squared correlation below which a cause does not stand for another one.
 const UNLIKE: f64 = 0.02;
 
+/// The other name of a function of the path, where it has one: driven one way alone, slopes and softer ground are the same.
+pub fn twin(id: &str) -> Option<&'static str> {
+    match id {
+        "grade" => Some("soft_ground"),
+        "soft_ground" => Some("grade"),
+        _ => None,
+    }
+}
+
 impl State<'_> {
     /// Causes that explain as much in the place of one.
     pub fn rivals(&self, best: &Stand, side: &Side) -> Vec<Rival> {
@@ -89,11 +98,7 @@ impl State<'_> {
         const LOPSIDED: f64 = 2.0;
         let causes: &[Cause] = &self.case.causes;
         let id = causes[one.trial.cause].id;
-        let twin = match id {
-            "grade" => "soft_ground",
-            "soft_ground" => "grade",
-            _ => return,
-        };
+        let Some(twin) = twin(id) else { return };
         let Some(place) = one.rivals.iter().position(|rival| causes[rival.cause].id == twin) else { return };
         let Some(function) = &one.function else { return };
         let values: Vec<f64> =

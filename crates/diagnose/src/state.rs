@@ -1,11 +1,14 @@
 //! A set of causes and how likely it makes the recordings: estimates, their noise, the evidence.
 
 use crate::Case;
+use crate::abreast::{self, Abreast, Spreaded, clusters};
 use crate::balance::System;
 use crate::catalogue::{Cause, Form};
 use crate::gram::{Column, Estimate, Reduced, Whitened};
+use crate::look::MANY_ROWS;
 use crate::noise::Noises;
 use crate::profile::{Function, Profile, Spread, Widths};
+use crate::rivals::twin;
 use crate::trial::{Pool, Trial};
 use nalgebra::DVector;
 
@@ -55,6 +58,15 @@ pub struct State<'a> {
     pub system: &'a System,
     pub pool: &'a Pool,
     pub fit: &'a [bool],
+}
+
+/// The functions of a cluster.
+fn members<'p, 'a>(
+    profiles: &'p [Option<(Profile<'a>, Spread)>],
+    cluster: &[usize],
+) -> Vec<Spreaded<'p, 'a>> {
+    let of = |place: &usize| profiles[*place].as_ref().map(|(profile, spread)| (profile, spread));
+    cluster.iter().filter_map(of).collect()
 }
 
 /// Effects are sometimes several times their usual size: so much wider is the prior that they are estimated with.
@@ -215,10 +227,39 @@ impl<'a> State<'a> {
     ) -> Option<Reduced> {
         let chunks = &self.system.chunks;
         let mut reduced = whitened.reduced(chunks, fit);
-        for (profile, spread) in profiles.iter().flatten() {
-            profile.take(whitened, chunks, fit, spread, &mut reduced)?;
+        for cluster in clusters(profiles) {
+            match members(profiles, &cluster)[..] {
+                [(profile, spread)] => profile.take(whitened, chunks, fit, spread, &mut reduced)?,
+                ref several => Abreast::of(several)?.take(whitened, chunks, fit, &mut reduced)?,
+            }
         }
         Some(reduced)
+    }
+
+    /// The functions of a set as some runs tell them, once all columns in use have the values `beta`; none where there are too
+    /// many to tell apart.
+    pub fn functions_of(
+        &self,
+        whitened: &Whitened,
+        profiles: &[Option<(Profile, Spread)>],
+        runs: &[bool],
+        beta: &DVector<f64>,
+        widths: Widths,
+    ) -> Option<Vec<Option<Function>>> {
+        let chunks = &self.system.chunks;
+        let mut all: Vec<Option<Function>> = vec![None; profiles.len()];
+        for cluster in clusters(profiles) {
+            let made = match members(profiles, &cluster)[..] {
+                [(profile, spread)] => {
+                    vec![profile.function(whitened, chunks, runs, spread, beta, widths)]
+                }
+                ref several => Abreast::of(several)?.functions(whitened, chunks, runs, beta, widths)?,
+            };
+            for (place, function) in cluster.into_iter().zip(made) {
+                all[place] = Some(function);
+            }
+        }
+        Some(all)
     }
 
     /// Whether the first column of a trial shows in a balance.
@@ -226,6 +267,39 @@ impl<'a> State<'a> {
         let signature = &self.pool.columns[trial.columns[0]];
         let own = self.system.chunks.iter().zip(signature).filter(|(chunk, _)| chunk.balance == balance);
         own.into_iter().any(|(_, values)| values.iter().any(|value| *value != 0.0))
+    }
+
+    /// Whether a function can stand beside those of a set: it has rows to itself, or few enough share them.
+    pub fn fits_beside(&self, trial: &Trial, parts: &[Part]) -> bool {
+        let steady = |part: &Part| {
+            let cause = self.cause(&part.trial);
+            !cause.by_run && part.spread.as_ref().is_none_or(|spread| spread.jumps.is_none())
+        };
+        let own = Part { trial: trial.clone(), spread: None };
+        let shared = parts.iter().filter(|part| part.spread.is_some()).collect::<Vec<_>>();
+        let few = self.system.row_count() <= MANY_ROWS
+            && shared.len() < abreast::MOST
+            && steady(&own)
+            && shared.iter().all(|part| steady(part))
+            && shared.iter().all(|part| self.both_ways(trial, &part.trial));
+        few || self.apart(trial, parts)
+    }
+
+    /// Whether a path that shows two functions of it was driven both ways, where that alone tells them apart.
+    fn both_ways(&self, one: &Trial, other: &Trial) -> bool {
+        if twin(self.id(one)) != Some(self.id(other)) {
+            return true;
+        }
+        let column = |trial: &Trial| &self.pool.columns[trial.columns[0]];
+        let mut ways: Vec<(usize, bool)> = Vec::new();
+        for (index, chunk) in self.system.chunks.iter().enumerate().filter(|(_, chunk)| self.fit[chunk.run]) {
+            let product = column(one)[index].dot(&column(other)[index]);
+            let way = (self.case.runs[chunk.run].path, product > 0.0);
+            if product != 0.0 && !ways.contains(&way) {
+                ways.push(way);
+            }
+        }
+        ways.iter().any(|(path, way)| ways.contains(&(*path, !way)))
     }
 
     /// Whether a function has rows to itself beside those of a set.
@@ -291,18 +365,13 @@ impl<'a> State<'a> {
             let reduced = self.without_functions(&whitened, &profiles, self.fit)?;
             let estimate = reduced.estimate(&places, &sd)?;
             let mut left = self.left(&used, &estimate.beta);
-            let made: Vec<Option<Function>> = profiles
-                .iter()
-                .map(|one| {
-                    let (profile, spread) = one.as_ref()?;
-                    let beta = &estimate.beta;
-                    let made = profile.function(&whitened, chunks, self.fit, spread, beta, Widths::Left);
-                    for (left, rows) in left.iter_mut().zip(profile.rows(self.system, &made)) {
-                        *left -= rows;
-                    }
-                    Some(made)
-                })
-                .collect();
+            let made = self.functions_of(&whitened, &profiles, self.fit, &estimate.beta, Widths::Left)?;
+            for (one, made) in profiles.iter().zip(&made) {
+                let (Some((profile, _)), Some(made)) = (one, made) else { continue };
+                for (left, rows) in left.iter_mut().zip(profile.rows(self.system, made)) {
+                    *left -= rows;
+                }
+            }
             let next = if round >= least {
                 self.system.noises_like(&left, self.fit, Some(&noises))
             } else {
@@ -347,11 +416,8 @@ impl<'a> State<'a> {
         let chunks = &self.system.chunks;
         let whitened = Whitened::new(chunks, &self.system.residual, &columns, noises);
         let Some(whitened) = whitened else { return vec![None; profiles.len()] };
-        let of = |one: &Option<(Profile, Spread)>| {
-            let ((profile, spread), beta) = (one.as_ref()?, &stand.estimate.beta);
-            Some(profile.function(&whitened, chunks, runs, spread, beta, Widths::Wanted))
-        };
-        profiles.iter().map(of).collect()
+        let told = self.functions_of(&whitened, &profiles, runs, &stand.estimate.beta, Widths::Wanted);
+        told.unwrap_or_else(|| vec![None; profiles.len()])
     }
 
     /// What columns of these values leave of every row.

@@ -69,6 +69,29 @@ fn a_gear_that_loses_a_little_more_is_calibrated_and_no_loss_is_claimed() {
     assert!(gear.ci95[0] < 0.94 && 0.94 < gear.ci95[1] && gear.ci95[1] - gear.ci95[0] < 0.08, "{gear:?}");
 }
 
+/// A tank fills while the vehicle crosses softer ground: a function of time and one of the path, in the same force.
+#[test]
+fn a_load_that_comes_and_ground_that_gives_way_are_told_beside_each_other() {
+    let of_run = |run: usize| {
+        let (from_s, to_s) = (3 + 3 * run, 14 + 4 * run);
+        recorded(
+            0.069,
+            &format!(
+                "payload_change(times_s: [0, {from_s}, {to_s}, 80], masses_kg: [0, 0, 5000, 5000]), \
+                 soft_ground(positions_m: [30, 55, 80, 100], coefficients: [0.03, 0, 0.025])"
+            ),
+        )
+    };
+    let mut recording = of_run(0);
+    for run in 1..recording.runs.len() {
+        recording.runs[run] = of_run(run).runs[run].clone();
+    }
+    let found = found(&recording, &Options::default()).unwrap();
+    let said = &found.diagnosis;
+    assert!(ids(&found).contains(&"payload_change"), "{}", said.answer);
+    assert!(named(&found, "soft_ground"), "{}", said.answer);
+}
+
 /// A speed that sticks for four seconds leaps when it goes on, and nobody braked there.
 #[test]
 fn where_a_speed_sticks_nobody_brakes() {

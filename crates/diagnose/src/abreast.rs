@@ -1,0 +1,269 @@
+//! Functions side by side: where two of them act on the same rows, as softer ground along a path and a tank that fills do, none
+//! can be eliminated before the other. Their knots are taken together, in one matrix that has no band.
+//!
+//! Source: Rasmussen and Williams, *Gaussian Processes for Machine Learning* (2006), section 2.7, for a sum of processes.
+
+use crate::gram::{Reduced, Whitened};
+use crate::profile::{Function, Group, Profile, Spread, Widths, log_precision, precision_entries};
+use crate::rows::Chunk;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use rayon::prelude::*;
+
+/// Knots of all functions together are at most so many.
+const MOST_KNOTS: usize = 1200;
+/// So many functions act on the same rows at most: of more nothing could be told.
+pub const MOST: usize = 2;
+
+/// A function and how it is spread.
+pub type Spreaded<'p, 'a> = (&'p Profile<'a>, &'p Spread);
+
+/// Functions that act on the same rows.
+pub struct Abreast<'p, 'a> {
+    members: Vec<Spreaded<'p, 'a>>,
+    /// Knots of every group of every member, and the place of the first of them among all.
+    groups: Vec<Vec<(Group, usize)>>,
+    knots: usize,
+}
+
+/// The knots of all members: factor of their precision, products with the other columns, ln |P| of what was known before.
+struct Solved {
+    factor: Cholesky<f64, Dyn>,
+    cross: DMatrix<f64>,
+    log_prior: f64,
+}
+
+impl<'p, 'a> Abreast<'p, 'a> {
+    /// None where there are too many knots, or too many functions.
+    pub fn of(members: &[Spreaded<'p, 'a>]) -> Option<Self> {
+        let mut knots = 0;
+        let mut of_member = |(profile, spread): &Spreaded| -> Vec<(Group, usize)> {
+            let placed = |group: Group| {
+                let first = knots;
+                knots += group.count;
+                (group, first)
+            };
+            profile.groups(spread).into_iter().map(placed).collect()
+        };
+        let groups = members.iter().map(&mut of_member).collect();
+        let able = members.len() <= MOST && knots <= MOST_KNOTS;
+        able.then(|| Self { members: members.to_vec(), groups, knots })
+    }
+
+    /// Eliminates the functions from products that were made already.
+    pub fn take(
+        &self,
+        whitened: &Whitened,
+        chunks: &[Chunk],
+        fit: &[bool],
+        reduced: &mut Reduced,
+    ) -> Option<()> {
+        let width = reduced.matrix.nrows();
+        let Solved { factor, cross, log_prior } = self.solved(whitened, chunks, fit)?;
+        let half = factor.l_dirty().solve_lower_triangular(&cross)?;
+        let taken = half.transpose() * &half;
+        // The residual is the last column of the cross products.
+        reduced.matrix -= taken.view((0, 0), (width, width));
+        reduced.vector -= taken.view((0, width), (width, 1)).column(0);
+        reduced.scalar -= taken[(width, width)];
+        let log_determinant: f64 = factor.l_dirty().diagonal().iter().map(|pivot| 2.0 * pivot.ln()).sum();
+        reduced.log_determinant += log_determinant - log_prior;
+        Some(())
+    }
+
+    /// The functions themselves, once the other columns have the values `beta`.
+    pub fn functions(
+        &self,
+        whitened: &Whitened,
+        chunks: &[Chunk],
+        fit: &[bool],
+        beta: &DVector<f64>,
+        widths: Widths,
+    ) -> Option<Vec<Function>> {
+        let Solved { factor, cross, .. } = self.solved(whitened, chunks, fit)?;
+        let mut right = cross.column(cross.ncols() - 1).into_owned();
+        for (column, value) in beta.iter().enumerate() {
+            right -= cross.column(column) * *value;
+        }
+        let values = factor.solve(&right);
+        let sd = match widths {
+            Widths::Wanted => factor.inverse().diagonal().map(f64::sqrt),
+            Widths::Left => DVector::from_element(self.knots, f64::NAN),
+        };
+        let of_member = |((_, spread), groups): (&Spreaded, &Vec<(Group, usize)>)| {
+            let own = |(group, first): &(Group, usize)| {
+                (values.rows(*first, group.count).into_owned(), sd.rows(*first, group.count).into_owned())
+            };
+            Function {
+                groups: groups.iter().map(|(group, _)| group.clone()).collect(),
+                values: groups.iter().map(own).collect(),
+                spread: (*spread).clone(),
+                squares: vec![Vec::new(); groups.len()],
+            }
+        };
+        Some(self.members.iter().zip(&self.groups).map(of_member).collect())
+    }
+
+    fn solved(&self, whitened: &Whitened, chunks: &[Chunk], fit: &[bool]) -> Option<Solved> {
+        let mut matrix = DMatrix::zeros(self.knots, self.knots);
+        let mut cross = DMatrix::zeros(self.knots, whitened.width() + 1);
+        let mut log_prior = 0.0;
+        for ((_, spread), groups) in self.members.iter().zip(&self.groups) {
+            for (number, (group, first)) in groups.iter().enumerate() {
+                for (row, column, value) in precision_entries(number, group, spread) {
+                    matrix[(first + row, first + column)] += value;
+                    if row != column {
+                        matrix[(first + column, first + row)] += value;
+                    }
+                }
+                log_prior += log_precision(number, group, spread);
+            }
+        }
+        // What each member does in a chunk, by its knots there.
+        let of_chunk = |(index, chunk): (usize, &Chunk)| -> Vec<(usize, DMatrix<f64>)> {
+            let of_member = |((profile, _), groups): (&Spreaded, &Vec<(Group, usize)>)| {
+                if !profile.touches(index) {
+                    return None;
+                }
+                let (group, first) = &groups[profile.group_of[chunk.run]];
+                let (low, mut basis) = profile.basis(index, chunk, group);
+                whitened.whiteners.whiten(index, chunk, &mut basis);
+                Some((first + low, basis))
+            };
+            if fit[chunk.run] {
+                self.members.iter().zip(&self.groups).filter_map(of_member).collect()
+            } else {
+                Vec::new()
+            }
+        };
+        let of_chunks: Vec<Vec<(usize, DMatrix<f64>)>> =
+            chunks.par_iter().enumerate().map(of_chunk).collect();
+        for (index, own) in of_chunks.iter().enumerate() {
+            for (first, basis) in own {
+                for (other, beside) in own {
+                    let mut view = matrix.view_mut((*first, *other), (basis.ncols(), beside.ncols()));
+                    view += basis.transpose() * beside;
+                }
+                let mut view = cross.view_mut((*first, 0), (basis.ncols(), whitened.width() + 1));
+                view += basis.transpose() * &whitened.chunks[index];
+            }
+        }
+        Some(Solved { factor: matrix.cholesky()?, cross, log_prior })
+    }
+}
+
+/// Which functions share rows: their numbers, those that do so together. Functions that are none are left out.
+pub fn clusters(profiles: &[Option<(Profile, Spread)>]) -> Vec<Vec<usize>> {
+    let mut all: Vec<Vec<usize>> = Vec::new();
+    let profile = |number: usize| profiles[number].as_ref().map(|(profile, _)| profile);
+    for number in (0..profiles.len()).filter(|number| profiles[*number].is_some()) {
+        let shares = |other: &usize| {
+            profile(number).zip(profile(*other)).is_some_and(|(own, other)| own.shares_rows(other))
+        };
+        match all.iter_mut().find(|cluster| cluster.iter().any(shares)) {
+            Some(cluster) => cluster.push(number),
+            None => all.push(vec![number]),
+        }
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gram::Column;
+    use crate::noise::{Noise, Noises, Shape};
+    use crate::profile::COARSE;
+    use crate::rows::Row;
+
+    const ROWS: usize = 14;
+
+    fn column(of: fn(f64) -> f64) -> Column {
+        vec![DVector::from_fn(ROWS, |row, _| of(row as f64))]
+    }
+
+    /// Signature times hat functions, over all knots.
+    fn basis(profile: &Profile, chunk: &Chunk, group: &Group) -> DMatrix<f64> {
+        let (low, part) = profile.basis(0, chunk, group);
+        let mut basis = DMatrix::zeros(ROWS, group.count);
+        basis.view_mut((0, low), part.shape()).copy_from(&part);
+        basis
+    }
+
+    /// Two functions of different places beside noise: evidence and means are those of the sum of two processes, whose
+    /// covariances are written down in full.
+    #[test]
+    fn two_functions_of_the_same_rows_are_a_sum_of_processes() {
+        let row = |row: usize| Row { samples: [row, row, row + 1], weights: vec![1.0], time_s: row as f64 };
+        let chunk = Chunk { balance: 0, run: 0, rows: (0..ROWS).map(row).collect() };
+        let noise = Noise { shape: Shape::Averaged, sensor: 0.3, process: 0.2, persistence: 0.5 };
+        let residual = column(|row| (0.9 * row).sin() + 0.2 * row);
+        let whitened =
+            Whitened::new(std::slice::from_ref(&chunk), &residual, &[], &Noises::normal(vec![noise]))
+                .unwrap();
+        let signatures = [column(|row| 1.0 + 0.1 * row), column(|row| (0.7 * row).cos())];
+        let places = [column(|row| row), column(|row| 40.0 - 1.5 * row)];
+        let spreads = [(5.0, 0.8), (9.0, 1.7)].map(|(length, size)| Spread {
+            length,
+            size,
+            knots_per_length: COARSE,
+            jumps: None,
+        });
+        let profiles: Vec<Profile> = signatures
+            .iter()
+            .zip(places)
+            .map(|(signature, at)| Profile {
+                signature,
+                extents: vec![(at[0].min(), at[0].max())],
+                at,
+                group_of: vec![0],
+            })
+            .collect();
+        assert!(profiles[0].shares_rows(&profiles[1]));
+
+        let mut covariance = noise.covariance(ROWS);
+        let mut priors = Vec::new();
+        for (profile, spread) in profiles.iter().zip(&spreads) {
+            let group = &profile.groups(spread)[0];
+            let apart = |one: usize, other: usize| group.step * one.abs_diff(other) as f64;
+            let prior = DMatrix::from_fn(group.count, group.count, |one, other| {
+                spread.size.powi(2) * (-apart(one, other) / spread.length).exp()
+            });
+            let basis = basis(profile, &chunk, group);
+            covariance += &basis * &prior * basis.transpose();
+            priors.push(prior * basis.transpose());
+        }
+        let inverse = covariance.clone().try_inverse().unwrap();
+        let deviance = (residual[0].transpose() * &inverse * &residual[0])[(0, 0)]
+            + covariance.determinant().ln()
+            + ROWS as f64 * std::f64::consts::TAU.ln();
+
+        let chunks = [chunk];
+        let members: Vec<Spreaded> = profiles.iter().zip(&spreads).collect();
+        let abreast = Abreast::of(&members).unwrap();
+        let mut reduced = whitened.reduced(&chunks, &[true]);
+        abreast.take(&whitened, &chunks, &[true], &mut reduced).unwrap();
+        let found = reduced.estimate(&[], &[]).unwrap().log_evidence;
+        assert!((found + 0.5 * deviance).abs() < 1e-8, "{found} against {}", -0.5 * deviance);
+        let nothing = DVector::zeros(0);
+        let functions = abreast.functions(&whitened, &chunks, &[true], &nothing, Widths::Wanted).unwrap();
+        for (function, prior) in functions.iter().zip(&priors) {
+            let expected = prior * &inverse * &residual[0];
+            assert!((&function.values[0].0 - expected).amax() < 1e-9);
+            assert!(function.values[0].1.iter().all(|sd| *sd > 0.0 && *sd < 1.7));
+        }
+    }
+
+    #[test]
+    fn more_functions_than_could_be_told_apart_are_refused() {
+        let signature = column(|_| 1.0);
+        let spread = Spread { length: 5.0, size: 1.0, knots_per_length: COARSE, jumps: None };
+        let profile = Profile {
+            signature: &signature,
+            at: column(|row| row),
+            group_of: vec![0],
+            extents: vec![(0.0, 13.0)],
+        };
+        assert!(Abreast::of(&[(&profile, &spread); MOST]).is_some());
+        assert!(Abreast::of(&[(&profile, &spread); MOST + 1]).is_none());
+    }
+}

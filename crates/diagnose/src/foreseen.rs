@@ -13,8 +13,12 @@ use crate::{Case, DiagnoseError, System};
 
 /// Error over the noise of the sensor above which something is missing, whatever the recordings ask for.
 const LACKS: f64 = 8.0;
-/// What foresees runs leaves less than this share of their mean squares in some balance.
-const FORESEEN: f64 = 0.2;
+/// What foresees runs leaves less than this share of their mean squares in some balance, beyond those of neighbouring rows,
+const FORESEEN: f64 = 0.3;
+/// where these are not nearly all there is,
+const LOUD: f64 = 1.2;
+/// and none becomes worse than by rounding.
+const WORSE: f64 = 1.01;
 /// So many sets get the chance.
 const MOST: usize = 4;
 
@@ -45,12 +49,16 @@ fn best(state: &State, found: &Found) -> Option<Found> {
     let before = state.foretold(&[], noises)?;
     let mut sets = state.together(&found.stand, &[]);
     sets.sort_by(|one, other| worth(other).total_cmp(&worth(one)));
-    // A balance that foresees itself as badly as before has no say, one that gets worse forbids.
+    // What neighbouring rows differ by nobody foresees.
+    let quiet: Vec<f64> = state.quiet(&found.first).each.iter().map(|noise| noise.sd().powi(2)).collect();
     let share = |stand: &Stand| -> Option<f64> {
         let after = state.foretold(&stand.parts, &stand.noises)?;
-        let shares: Vec<f64> = after.iter().zip(&before).map(|(after, before)| after / before).collect();
-        let least = shares.iter().copied().fold(f64::INFINITY, f64::min);
-        (shares.iter().all(|share| *share <= 1.0 || share.is_nan()) && least < FORESEEN).then_some(least)
+        let of = |((after, before), quiet): ((&f64, &f64), &f64)| {
+            (*before > LOUD * quiet).then(|| (after - quiet).max(0.0) / (before - quiet))
+        };
+        let least = after.iter().zip(&before).zip(&quiet).filter_map(of).fold(f64::INFINITY, f64::min);
+        let worse = after.iter().zip(&before).any(|(after, before)| *after > WORSE * before);
+        (!worse && least < FORESEEN).then_some(least)
     };
     let shares = sets.into_iter().take(MOST).filter_map(|set| Some((share(&set)?, set)));
     let (_, stand) = shares.min_by(|one, other| one.0.total_cmp(&other.0))?;

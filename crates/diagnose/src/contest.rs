@@ -1,7 +1,7 @@
 //! One cause more: the trials beside a set of causes, the best first.
 
 use crate::balance::Kind;
-use crate::catalogue::Form;
+use crate::catalogue::{Cause, Form};
 use crate::gram::{Reduced, Whitened};
 use crate::jumps::Jumps;
 use crate::look::MANY_ROWS;
@@ -45,13 +45,15 @@ impl State<'_> {
                 let cause = self.cause(&part.trial);
                 std::iter::once(cause.id).chain(part.spread.as_ref().and(cause.even()).map(|(even, _)| even))
             })
-            .chain(banned.iter().copied())
             .collect();
+        // What the runs do not teach each other one of them may still show by itself.
+        let out =
+            |cause: &Cause| taken.contains(&cause.id) || cause.run.is_none() && banned.contains(&cause.id);
         let sd = self.sd();
         let mut open: Vec<(f64, Part)> = Vec::new();
         for trial in &self.pool.trials {
             let cause = self.cause(trial);
-            if taken.contains(&cause.id) || cause.is_function() {
+            if out(cause) || cause.is_function() {
                 continue;
             }
             let part = Part { trial: trial.clone(), spread: None };
@@ -84,7 +86,7 @@ impl State<'_> {
         }
         let mut finalists: Vec<(Part, Noises)> =
             open.into_iter().map(|(_, part)| (part, stand.noises.clone())).collect();
-        finalists.extend(self.functions(stand, &taken));
+        finalists.extend(self.functions(stand, &out));
         // The noise belongs to what is explained: each finalist is judged with its own.
         let settled = |(part, noises): (Part, Noises)| {
             let mut parts = stand.parts.clone();
@@ -107,13 +109,13 @@ impl State<'_> {
 
     /// The functions, each spread as suits best at the noise of a set, and once more at the noise that neighbouring rows
     /// show: what a function leaves out passes for noise, and would let no function follow.
-    fn functions(&self, stand: &Stand, taken: &[&str]) -> Vec<(Part, Noises)> {
+    fn functions(&self, stand: &Stand, out: &dyn Fn(&Cause) -> bool) -> Vec<(Part, Noises)> {
         let many = self.system.row_count() > MANY_ROWS;
         let open = self.pool.trials.iter().filter(|trial| {
             let cause = self.cause(trial);
             cause.is_function()
                 && !(cause.by_run && many)
-                && !taken.contains(&cause.id)
+                && !out(cause)
                 && self.fits_beside(trial, &stand.parts)
         });
         let quiet = self.quiet(stand);
@@ -125,12 +127,12 @@ impl State<'_> {
             Some((Part { spread: Some(spread), ..part }, noises.clone()))
         };
         let mut all: Vec<(Part, Noises)> = starts.into_par_iter().filter_map(part).collect();
-        all.extend(self.jumping(stand, taken, &quiet));
+        all.extend(self.jumping(stand, out, &quiet));
         all
     }
 
     /// Functions that stay and then jump.
-    fn jumping(&self, stand: &Stand, taken: &[&str], quiet: &Noises) -> Vec<(Part, Noises)> {
+    fn jumping(&self, stand: &Stand, out: &dyn Fn(&Cause) -> bool, quiet: &Noises) -> Vec<(Part, Noises)> {
         /// What is switched is found on knots this many blocks apart.
         const BLOCKS: f64 = 2.0;
         /// Between jumps a function wanders by its size in so many times its steps, and jumps find their own size.
@@ -138,10 +140,7 @@ impl State<'_> {
         const SIZE: f64 = 0.3;
         let switched = self.pool.trials.iter().filter(|trial| {
             let cause = self.cause(trial);
-            cause.is_function()
-                && cause.id == SWITCHED
-                && !taken.contains(&cause.id)
-                && self.apart(trial, &stand.parts)
+            cause.is_function() && cause.id == SWITCHED && !out(cause) && self.apart(trial, &stand.parts)
         });
         let of_battery = self.system.kinds.iter().position(|kind| *kind == Kind::Battery);
         let Some(step) = of_battery.map(|number| BLOCKS * self.system.blocks_s[number]) else {

@@ -19,8 +19,9 @@ impl State<'_> {
             let of = |stand: &Stand| -> Option<f64> {
                 let part = stand.parts.last()?;
                 let cause = self.cause(&part.trial);
-                let id = |number: &usize| self.case.causes[*number].id;
-                if cause.id == own.id || law(part) || banned.iter().any(|one| id(one) == cause.id) {
+                let banned = cause.run.is_none()
+                    && banned.iter().any(|number| self.case.causes[*number].id == cause.id);
+                if cause.id == own.id || law(part) || banned {
                     return None;
                 }
                 let needed = if is_plain(cause, &side.part, own) { -TOLERANCE } else { TOLERANCE };

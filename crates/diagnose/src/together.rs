@@ -93,7 +93,8 @@ impl State<'_> {
         let Some(reduced) = self.reduced(noises, parts) else { return Vec::new() };
         let (used, sd) = (self.columns(parts), self.sd());
         let taken = |cause: &Cause| {
-            banned.contains(&cause.id) || parts.iter().any(|part| self.id(&part.trial) == cause.id)
+            cause.run.is_none() && banned.contains(&cause.id)
+                || parts.iter().any(|part| self.id(&part.trial) == cause.id)
         };
         let mut all: Vec<Scored> = Vec::new();
         for trial in &self.pool.trials {

@@ -40,7 +40,9 @@ pub fn foreseen(
     let state = State { case, system, pool, fit: &case.fit };
     let Some(set) = best(&state, &proven.found) else { return Ok(proven) };
     let other = Proven::of(case, system, pool, set, events, None)?;
-    Ok(if other.withheld.is_none() { other } else { proven })
+    // Those that are held out may forbid it, as they may any claim.
+    let forbidden = other.withheld.is_some() || other.is_worse_than(&proven);
+    Ok(if forbidden { proven } else { other })
 }
 
 /// The set that foresees best, where it foresees far better than nothing.

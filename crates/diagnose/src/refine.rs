@@ -51,6 +51,7 @@ pub struct Free {
 }
 
 /// Everything that was found, with values.
+#[derive(Clone)]
 pub struct Refined {
     /// The causes.
     pub causes: Vec<Cured>,

@@ -41,7 +41,7 @@ pub fn straying(
 impl State<'_> {
     /// What shows besides once rows may stray: causes that the strange rows hid.
     fn further(&self, mut best: Stand) -> Option<Stand> {
-        for _ in 0..MOST_CAUSES {
+        while best.parts.len() < MOST_CAUSES {
             let reduced = self.reduced(&best.noises, &best.parts)?;
             let needed = PER_CAUSE + LEAST_GAIN.max(self.chance(&best, &reduced));
             let able = |one: &Contest| one.stand.score - best.score >= needed && self.sensible(&one.stand);

@@ -41,6 +41,12 @@ impl Proven {
         Ok(Self { found, refined, withheld, proof })
     }
 
+    /// Whether runs held out are worse with this than with another.
+    pub fn is_worse_than(&self, other: &Self) -> bool {
+        let held_out = self.worsened().zip(other.worsened());
+        held_out.is_some_and(|(own, other)| own > (1.0 + RISES) * other)
+    }
+
     /// Error on runs held out over that of the nominal scenario, where there are any.
     fn worsened(&self) -> Option<f64> {
         let errors = self.proof.held_out?;
@@ -149,8 +155,18 @@ fn without_nothing(
             }
             let told = (own.found.tried.clone(), own.found.unproven.clone());
             let found = state.found(stand, own.found.first.clone(), told, own.found.needed);
+            // Where it is next to nothing all else may stay as it is; where it is not, the rest is fitted once more.
+            let mut refined = own.refined.clone();
+            refined.causes.retain(|other| other.accepted.trial.columns != *columns);
+            let proof = prove(case, system, &refined, by)?;
+            let as_it_is = Proven { found: found.clone(), refined, withheld: own.withheld.clone(), proof };
+            let able = |one: &Proven| one.proof.fitted.after <= (1.0 + RISES) * best.proof.fitted.after;
+            if able(&as_it_is) {
+                lesser = Some(as_it_is);
+                continue 'asked;
+            }
             let other = Proven::of(case, system, pool, found, events, by)?;
-            if other.proof.fitted.after <= (1.0 + RISES) * best.proof.fitted.after {
+            if able(&other) {
                 lesser = Some(other);
                 continue 'asked;
             }

@@ -73,7 +73,7 @@ pub fn proven(
         for place in 0..best.found.stand.parts.len() {
             let Some(found) = without(case, system, pool, &best.found, place) else { continue };
             let lesser = Proven::of(case, system, pool, found, events, by)?;
-            if let Some(ratio) = lesser.worsened().filter(|ratio| *ratio < worsened - RISES)
+            if let Some(ratio) = lesser.worsened().filter(|ratio| *ratio < (1.0 + RISES) * worsened)
                 && least.as_ref().is_none_or(|(other, _)| ratio < *other)
             {
                 least = Some((ratio, lesser));

@@ -3,7 +3,7 @@
 //!
 //! Source: Rasmussen and Williams, *Gaussian Processes for Machine Learning* (2006), section 2.7, for a sum of processes.
 
-use crate::gram::{Reduced, Whitened};
+use crate::gram::{Reduced, Whitened, right_side};
 use crate::profile::{Function, Group, Profile, Spread, Widths, log_precision, precision_entries};
 use crate::rows::Chunk;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -57,16 +57,11 @@ impl<'p, 'a> Abreast<'p, 'a> {
         fit: &[bool],
         reduced: &mut Reduced,
     ) -> Option<()> {
-        let width = reduced.matrix.nrows();
         let Solved { factor, cross, log_prior } = self.solved(whitened, chunks, fit)?;
         let half = factor.l_dirty().solve_lower_triangular(&cross)?;
         let taken = half.transpose() * &half;
-        // The residual is the last column of the cross products.
-        reduced.matrix -= taken.view((0, 0), (width, width));
-        reduced.vector -= taken.view((0, width), (width, 1)).column(0);
-        reduced.scalar -= taken[(width, width)];
         let log_determinant: f64 = factor.l_dirty().diagonal().iter().map(|pivot| 2.0 * pivot.ln()).sum();
-        reduced.log_determinant += log_determinant - log_prior;
+        reduced.take(&taken, log_determinant - log_prior);
         Some(())
     }
 
@@ -80,11 +75,7 @@ impl<'p, 'a> Abreast<'p, 'a> {
         widths: Widths,
     ) -> Option<Vec<Function>> {
         let Solved { factor, cross, .. } = self.solved(whitened, chunks, fit)?;
-        let mut right = cross.column(cross.ncols() - 1).into_owned();
-        for (column, value) in beta.iter().enumerate() {
-            right -= cross.column(column) * *value;
-        }
-        let values = factor.solve(&right);
+        let values = factor.solve(&right_side(&cross, beta));
         let sd = match widths {
             Widths::Wanted => factor.inverse().diagonal().map(f64::sqrt),
             Widths::Left => DVector::from_element(self.knots, f64::NAN),

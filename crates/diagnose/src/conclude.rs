@@ -16,7 +16,8 @@ pub struct Side {
     pub part: Part,
     /// The set without it, where that can be estimated.
     pub lesser: Option<Stand>,
-    /// The set with another cause in its place, the best first; its own is among them.
+    /// The set with another cause in its place, the best first, its own among them; and last a function of the path by its
+    /// other name.
     pub contests: Vec<Contest>,
 }
 

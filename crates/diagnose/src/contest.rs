@@ -46,9 +46,7 @@ impl State<'_> {
                 std::iter::once(cause.id).chain(part.spread.as_ref().and(cause.even()).map(|(even, _)| even))
             })
             .collect();
-        // What the runs do not teach each other one of them may still show by itself.
-        let out =
-            |cause: &Cause| taken.contains(&cause.id) || cause.run.is_none() && banned.contains(&cause.id);
+        let out = |cause: &Cause| taken.contains(&cause.id) || cause.is_banned(banned);
         let sd = self.sd();
         let mut open: Vec<(f64, Part)> = Vec::new();
         for trial in &self.pool.trials {

@@ -40,11 +40,11 @@ impl State<'_> {
     /// Sum of the squares of what is left, whitened, of runs that were each predicted by the others.
     fn deviance(&self, parts: &[Part], stand: &Stand) -> Option<f64> {
         let chunks = &self.system.chunks;
-        let whitened = Whitened::new(chunks, &self.system.residual, &[], &stand.noises)?;
+        let whiteners = stand.noises.whiteners(chunks)?;
         let told = self.told_by_others(parts, &stand.noises)?;
         let of_run = |one: &Told| {
             let white = |(index, left): &(usize, DVector<f64>)| {
-                whitened.whiteners.white(*index, &chunks[*index], left).norm_squared()
+                whiteners.white(*index, &chunks[*index], left).norm_squared()
             };
             // What is known of the free parameters is known once, not once for every run.
             one.bent / told.len() as f64 + one.left.iter().map(white).sum::<f64>()

@@ -10,6 +10,7 @@ impl State<'_> {
     /// The set with that cause exchanged for which another one says most more in its place; or for the plain value of what
     /// was a function, where that says as much. None where every cause is where it belongs.
     pub fn exchanged(&self, best: &Stand, sides: &[Side], banned: &[usize]) -> Option<Stand> {
+        let banned: Vec<&str> = banned.iter().map(|number| self.case.causes[*number].id).collect();
         let law = |part: &Part| self.cause(&part.trial).law.is_some();
         if best.parts.iter().any(law) {
             return None;
@@ -19,9 +20,7 @@ impl State<'_> {
             let of = |stand: &Stand| -> Option<f64> {
                 let part = stand.parts.last()?;
                 let cause = self.cause(&part.trial);
-                let banned = cause.run.is_none()
-                    && banned.iter().any(|number| self.case.causes[*number].id == cause.id);
-                if cause.id == own.id || law(part) || banned {
+                if cause.id == own.id || law(part) || cause.is_banned(&banned) {
                     return None;
                 }
                 let needed = if is_plain(cause, &side.part, own) { -TOLERANCE } else { TOLERANCE };

@@ -96,7 +96,25 @@ impl Whitened {
     }
 }
 
+/// A right side without what other columns of these values make of it; it is the last column of the products.
+pub fn right_side(cross: &DMatrix<f64>, beta: &DVector<f64>) -> DVector<f64> {
+    let mut right = cross.column(cross.ncols() - 1).into_owned();
+    for (column, value) in beta.iter().enumerate() {
+        right -= cross.column(column) * *value;
+    }
+    right
+}
+
 impl Reduced {
+    /// Takes products out that belong to what was eliminated, the residual's last, with what it adds to ln |Σ|.
+    pub fn take(&mut self, taken: &DMatrix<f64>, log_determinant: f64) {
+        let width = self.matrix.nrows();
+        self.matrix -= taken.view((0, 0), (width, width));
+        self.vector -= taken.view((0, width), (width, 1)).column(0);
+        self.scalar -= taken[(width, width)];
+        self.log_determinant += log_determinant;
+    }
+
     fn chosen(&self, used: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
         let matrix =
             DMatrix::from_fn(used.len(), used.len(), |row, column| self.matrix[(used[row], used[column])]);

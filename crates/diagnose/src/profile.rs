@@ -9,7 +9,7 @@
 use crate::balance::System;
 use crate::band::{Band, Factor};
 use crate::catalogue::Form;
-use crate::gram::{Column, Reduced, Whitened};
+use crate::gram::{Column, Reduced, Whitened, right_side};
 use crate::jumps::{Jumps, squares};
 use crate::recorded::Recorded;
 use crate::rows::{Chunk, Row};
@@ -178,7 +178,6 @@ impl<'a> Profile<'a> {
         reduced: &mut Reduced,
     ) -> Option<()> {
         let groups = self.groups(spread);
-        let width = reduced.matrix.nrows();
         let of_group = |(number, group): (usize, &Group)| {
             let Some(parts) = self.parts(whitened, chunks, fit, number, group, spread) else {
                 return Ok(None);
@@ -191,11 +190,7 @@ impl<'a> Profile<'a> {
         };
         let taken: Result<Vec<_>, ()> = groups.par_iter().enumerate().map(of_group).collect();
         for (taken, log) in taken.ok()?.into_iter().flatten() {
-            // The residual is the last column of the cross products.
-            reduced.matrix -= taken.view((0, 0), (width, width));
-            reduced.vector -= taken.view((0, width), (width, 1)).column(0);
-            reduced.scalar -= taken[(width, width)];
-            reduced.log_determinant += log;
+            reduced.take(&taken, log);
         }
         Some(())
     }
@@ -218,11 +213,7 @@ impl<'a> Profile<'a> {
                 let size = DVector::from_element(group.count, spread.size);
                 return ((DVector::zeros(group.count), size), vec![1.0; group.count - 1]);
             };
-            let mut right = cross.column(cross.ncols() - 1).into_owned();
-            for (column, value) in beta.iter().enumerate() {
-                right -= cross.column(column) * *value;
-            }
-            let values = factor.solve(&right);
+            let values = factor.solve(&right_side(&cross, beta));
             if widths == Widths::Left && spread.jumps.is_none() {
                 let unknown = DVector::from_element(group.count, f64::NAN);
                 return ((values, unknown), Vec::new());

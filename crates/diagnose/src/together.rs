@@ -76,7 +76,7 @@ impl State<'_> {
         let trials = self.pool.trials.iter().filter(|trial| {
             let cause = self.cause(trial);
             free && cause.form == Form::OverPosition
-                && !banned.contains(&cause.id)
+                && !cause.is_banned(banned)
                 && !start.parts.iter().any(|part| self.id(&part.trial) == cause.id)
                 && self.apart(trial, &start.parts)
         });
@@ -93,8 +93,7 @@ impl State<'_> {
         let Some(reduced) = self.reduced(noises, parts) else { return Vec::new() };
         let (used, sd) = (self.columns(parts), self.sd());
         let taken = |cause: &Cause| {
-            cause.run.is_none() && banned.contains(&cause.id)
-                || parts.iter().any(|part| self.id(&part.trial) == cause.id)
+            cause.is_banned(banned) || parts.iter().any(|part| self.id(&part.trial) == cause.id)
         };
         let mut all: Vec<Scored> = Vec::new();
         for trial in &self.pool.trials {

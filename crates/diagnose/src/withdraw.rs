@@ -147,14 +147,8 @@ fn without_nothing(
             let place = parts.iter().position(|part| part.trial.columns == *columns);
             let Some(place) = place.filter(|_| parts.len() > 1) else { continue };
             let state = State { case, system, pool, fit: &case.fit };
-            let mut parts = parts.clone();
-            parts.remove(place);
-            let Some(stand) = state.settle(&parts, &own.found.stand.noises) else { continue };
-            if state.impossible(&stand.parts, &stand.estimate) {
-                continue;
-            }
-            let told = (own.found.tried.clone(), own.found.unproven.clone());
-            let found = state.found(stand, own.found.first.clone(), told, own.found.needed);
+            let unproven = own.found.unproven.clone();
+            let Some(found) = lesser_set(&state, &own.found, place, unproven) else { continue };
             // Where it is next to nothing all else may stay as it is; where it is not, the rest is fitted once more.
             let mut refined = own.refined.clone();
             refined.causes.retain(|other| other.accepted.trial.columns != *columns);
@@ -215,16 +209,22 @@ fn beyond(state: &State, part: &Part) -> bool {
 /// The same without one cause, unless no run held out can tell of it.
 fn without(case: &Case, system: &System, pool: &Pool, found: &Found, place: usize) -> Option<Found> {
     let state = State { case, system, pool, fit: &case.fit };
-    let mut parts: Vec<Part> = found.stand.parts.clone();
-    let part = parts.remove(place);
-    if beyond(&state, &part) {
-        return None;
-    }
-    let stand = state.settle(&parts, &found.stand.noises)?;
-    if state.impossible(&stand.parts, &stand.estimate) {
+    let part = &found.stand.parts[place];
+    if beyond(&state, part) {
         return None;
     }
     let mut unproven = found.unproven.clone();
     unproven.push(part.trial.cause);
+    lesser_set(&state, found, place, unproven)
+}
+
+/// What was found without the cause in one place; none where what is left would have to be what it cannot be.
+fn lesser_set(state: &State, found: &Found, place: usize, unproven: Vec<usize>) -> Option<Found> {
+    let mut parts: Vec<Part> = found.stand.parts.clone();
+    parts.remove(place);
+    let stand = state.settle(&parts, &found.stand.noises)?;
+    if state.impossible(&stand.parts, &stand.estimate) {
+        return None;
+    }
     Some(state.found(stand, found.first.clone(), (found.tried.clone(), unproven), found.needed))
 }

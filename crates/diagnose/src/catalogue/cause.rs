@@ -135,6 +135,11 @@ impl Cause {
         self
     }
 
+    /// Whether it is among those that the runs do not teach each other; one of them may still show it by itself.
+    pub fn is_banned(&self, ids: &[&str]) -> bool {
+        self.run.is_none() && ids.contains(&self.id)
+    }
+
     /// The effect as it is in a run in which the cause does not work.
     pub fn idle(&self) -> String {
         let values: Vec<f64> = self.terms.iter().map(|term| f64::from(u8::from(!term.linear))).collect();

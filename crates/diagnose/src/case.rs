@@ -298,7 +298,7 @@ impl<'a> Case<'a> {
     }
 
     /// Whether force or torque drives somewhere.
-    fn driven(&self) -> bool {
+    pub fn driven(&self) -> bool {
         self.runs.iter().any(|run| {
             let coasting = run.measured.trace.get("coasting");
             run.force_n.iter().flatten().enumerate().any(|(index, force)| {

@@ -6,9 +6,13 @@ use crate::conclude::Side;
 use crate::search::{TOLERANCE, rank};
 use crate::state::{Part, Stand, State};
 
+/// A function whose course brings no more than this share of what it brings is its plain value: what else is wrong in the
+/// model bends a function that is free to bend.
+const COURSE: f64 = 0.1;
+
 impl State<'_> {
     /// The set with that cause exchanged for which another one says most more in its place; or for the plain value of what
-    /// was a function, where that says as much. None where every cause is where it belongs.
+    /// was a function, where that says nearly as much. None where every cause is where it belongs.
     pub fn exchanged(&self, best: &Stand, sides: &[Side], banned: &[usize]) -> Option<Stand> {
         let banned: Vec<&str> = banned.iter().map(|number| self.case.causes[*number].id).collect();
         let law = |part: &Part| self.cause(&part.trial).law.is_some();
@@ -17,13 +21,15 @@ impl State<'_> {
         }
         let more = |side: &Side| -> Option<(f64, Stand)> {
             let own = self.cause(&side.part.trial);
+            let brings = side.lesser.as_ref().map_or(0.0, |lesser| best.score - lesser.score);
+            let as_good = TOLERANCE.max(COURSE * brings);
             let of = |stand: &Stand| -> Option<f64> {
                 let part = stand.parts.last()?;
                 let cause = self.cause(&part.trial);
                 if cause.id == own.id || law(part) || cause.is_banned(&banned) {
                     return None;
                 }
-                let needed = if is_plain(cause, &side.part, own) { -TOLERANCE } else { TOLERANCE };
+                let needed = if is_plain(cause, &side.part, own) { -as_good } else { TOLERANCE };
                 Some(rank(stand, self) - best.score - needed).filter(|more| *more > 0.0)
             };
             let all = side.contests.iter().filter_map(|one| Some((of(&one.stand)?, &one.stand)));

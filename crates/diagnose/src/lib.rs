@@ -27,6 +27,7 @@ mod exchange;
 mod experiment;
 mod faults;
 mod foreseen;
+mod formula;
 mod gram;
 mod jumps;
 mod laid;

@@ -154,6 +154,15 @@ pub fn effect(
     }))
 }
 
+/// What a drive that loses all its force on the way would leave out of the motion, sample by sample [N].
+pub fn lost_drive_n(case: &Case) -> Result<Vec<Vec<f64>>, DiagnoseError> {
+    /// A share that any driveline can lose.
+    const SHARE: f64 = 0.1;
+    let text = format!("driveline_efficiency(loss: {SHARE:?})");
+    let after = case.said_beside(&|_| text.clone(), &case.study.priors(), &[Kind::Motion])?;
+    Ok(difference(case, Kind::Motion, &after, SHARE))
+}
+
 /// Nothing, in every run.
 fn silent(case: &Case) -> Vec<Vec<f64>> {
     vec![Vec::new(); case.runs.len()]

@@ -4,16 +4,15 @@
 
 use crate::balance::Kind;
 use crate::catalogue::{Cause, Class, Form, LawText};
+use crate::formula::{self, Sought, law};
 use crate::gram::Column;
 use crate::look::MANY_ROWS;
 use crate::losses::SPEED_SQUARED;
-use crate::noise::{Noises, Whiteners};
 use crate::search::{Found, MOST_CAUSES, OTHER_WORDS, TOLERANCE, concluded, worth};
 use crate::state::{Part, Stand, State};
-use crate::trial::{Pool, Trial, effect};
+use crate::trial::{Pool, Trial};
 use crate::{Case, DiagnoseError, System};
-use headland_calibrate::statistics::median;
-use headland_symbolic::{Law, Nuisance, Options, Problem, Rows, SymbolicError, Target, Variable, find};
+use headland_symbolic::{Law, Target};
 
 /// A law has to be worth so much more than the listed causes: odds of four hundred to one.
 const MARGIN: f64 = 6.0;
@@ -26,8 +25,6 @@ const SIMPLER: f64 = 0.03;
 const EVERYWHERE: f64 = 0.04;
 /// Causes that hide each other bring beside one another up to so many times what the best of them brings alone.
 const HARDLY: f64 = 3.0;
-/// A wave takes so many blocks of samples.
-const BLOCKS: f64 = 4.0;
 
 /// Looks for a law, and puts it in the place of what was found or beside it.
 pub fn unlisted(
@@ -40,18 +37,25 @@ pub fn unlisted(
         return Ok(found);
     }
     let mut found = found;
-    for (kind, target) in
-        [(Kind::Motion, Target::Force), (Kind::Battery, Target::Power), (Kind::Fuel, Target::Power)]
-    {
+    let sought = [
+        (Kind::Motion, Target::Force),
+        (Kind::Motion, Target::Share),
+        (Kind::Battery, Target::Power),
+        (Kind::Fuel, Target::Power),
+    ];
+    for (kind, target) in sought {
         // A consumer that is switched with time may take any course: where that is long, no law says more.
         let any = found.stand.parts.iter().any(|part| {
             let cause = &case.causes[part.trial.cause];
             kind != Kind::Motion && cause.form == Form::OverTime && cause.balances.contains(&kind)
         });
         let any = any && system.row_count() > MANY_ROWS;
-        if system.has(kind) && !any {
+        if system.has(kind)
+            && !any
+            && let Some(sought) = Sought::new(case, system, kind, target)?
+        {
             case.step("unlisted causes")?;
-            found = beside(case, system, pool, found, (kind, target))?;
+            found = beside(case, system, pool, found, &sought)?;
         }
     }
     Ok(found)
@@ -63,7 +67,7 @@ fn candidates(
     system: &System,
     pool: &mut Pool,
     found: &Found,
-    sought: Sought,
+    sought: &Sought,
 ) -> Result<Vec<Vec<Part>>, DiagnoseError> {
     let listed = found.stand.parts.clone();
     let mut candidates: Vec<Vec<Part>> = Vec::new();
@@ -75,7 +79,7 @@ fn candidates(
         starts.push(listed);
     }
     for start in starts {
-        let Some(mut law) = self::law(case, system, pool, &start, &found.stand.noises, sought)? else {
+        let Some(mut law) = law(case, system, pool, &start, &found.stand.noises, sought)? else {
             continue;
         };
         if start.is_empty() && rows <= MANY_ROWS {
@@ -90,7 +94,7 @@ fn candidates(
         let with = |part: &Part| start.iter().cloned().chain([part.clone()]).collect::<Vec<Part>>();
         if let Some(settled) = state.settle(&with(&part), &found.stand.noises)
             && (rows <= MANY_ROWS || worth(&settled) > worth(&found.stand))
-            && let Some(better) = self::law(case, system, pool, &start, &settled.noises, sought)?
+            && let Some(better) = formula::law(case, system, pool, &start, &settled.noises, sought)?
             && !is_map(&better)
             && !is_undetermined(&better)
         {
@@ -113,11 +117,9 @@ fn beside(
     system: &System,
     pool: &mut Pool,
     found: Found,
-    (kind, target): (Kind, Target),
+    sought: &Sought,
 ) -> Result<Found, DiagnoseError> {
     let rows = system.row_count();
-    let per_unit = if kind == Kind::Fuel { fuel_per_watt(case, system)? } else { 1.0 };
-    let sought = Sought { kind, target, per_unit };
     let candidates = candidates(case, system, pool, &found, sought)?;
     let state = State { case, system, pool, fit: &case.fit };
     let alone = found.tried.first().and_then(|round| round.causes.first()).map_or(0.0, |one| one.2);
@@ -309,7 +311,13 @@ impl State<'_> {
 
 /// A law without one of its terms, each in turn, and each term by itself: what was left out may be a listed cause that the
 /// formula says in other words.
-fn with_less(case: &mut Case, system: &System, pool: &mut Pool, law: &Law, sought: Sought) -> Vec<Vec<Part>> {
+fn with_less(
+    case: &mut Case,
+    system: &System,
+    pool: &mut Pool,
+    law: &Law,
+    sought: &Sought,
+) -> Vec<Vec<Part>> {
     let terms: Vec<Part> = law
         .each
         .iter()
@@ -328,13 +336,13 @@ fn with_less(case: &mut Case, system: &System, pool: &mut Pool, law: &Law, sough
 }
 
 /// The regressor of a law.
-fn add(case: &mut Case, system: &System, pool: &mut Pool, law: &Law, sought: Sought) -> Part {
-    let Sought { kind, per_unit, .. } = sought;
-    let rows = |run: &Vec<f64>| run.iter().map(|value| per_unit * value).collect();
+fn add(case: &mut Case, system: &System, pool: &mut Pool, law: &Law, sought: &Sought) -> Part {
+    let Sought { kind, target, .. } = *sought;
     let silent = || vec![Vec::new(); case.runs.len()];
-    let prediction: Vec<Vec<f64>> = law.prediction.iter().map(rows).collect();
+    let samples = |(run, said): (usize, &Vec<f64>)| sought.samples(run, said);
+    let prediction: Vec<Vec<f64>> = law.prediction.iter().enumerate().map(samples).collect();
     let column = system.column(|own| if own == kind { prediction.clone() } else { silent() });
-    put(case, pool, Cause::of_law(LawText::new(law, kind), kind), column)
+    put(case, pool, Cause::of_law(LawText::new(law, target), kind), column)
 }
 
 /// A law among the causes, with its regressor.
@@ -390,194 +398,9 @@ fn outgrown(case: &mut Case, pool: &mut Pool, found: &Found) -> Option<Part> {
     Some(put(case, pool, Cause::of_law(text, Kind::Battery), column))
 }
 
-/// What is sought in a balance.
-#[derive(Clone, Copy)]
-struct Sought {
-    kind: Kind,
-    target: Target,
-    /// What one newton or one watt makes of the balance's rows.
-    per_unit: f64,
-}
-
-/// Power in the fuel that a consumer of one watt takes, on average.
-fn fuel_per_watt(case: &Case, system: &System) -> Result<f64, DiagnoseError> {
-    /// A consumer of a usual size [W].
-    const USUAL_W: f64 = 1000.0;
-    let consumer = Cause::consumer();
-    let column = effect(case, system, &consumer, USUAL_W, &|_| consumer.written(&[USUAL_W]))?;
-    let (mut sum, mut count) = (0.0, 0.0);
-    for (chunk, rows) in system.chunks.iter().zip(&column) {
-        if system.kind(chunk) == Kind::Fuel && case.fit[chunk.run] {
-            sum += rows.sum();
-            count += rows.len() as f64;
-        }
-    }
-    Ok(if sum > 0.0 { sum / count } else { 1.0 })
-}
-
-/// From samples to whitened rows of one balance.
-struct Whitening<'a> {
-    system: &'a System,
-    whiteners: Whiteners,
-    sought: Sought,
-}
-
-impl Whitening<'_> {
-    fn of(&self, run: usize, values: impl Fn(usize) -> nalgebra::DVector<f64>) -> Vec<f64> {
-        let chunks = self.system.chunks.iter().enumerate();
-        let own = chunks.filter(|(_, chunk)| chunk.run == run && self.system.kind(chunk) == self.sought.kind);
-        own.flat_map(|(index, chunk)| {
-            self.whiteners.white(index, chunk, &values(index)).iter().copied().collect::<Vec<_>>()
-        })
-        .collect()
-    }
-}
-
-impl Rows for Whitening<'_> {
-    fn rows(&self, run: usize, samples: &[f64]) -> Vec<f64> {
-        self.of(run, |index| {
-            let rows = &self.system.chunks[index].rows;
-            nalgebra::DVector::from_iterator(
-                rows.len(),
-                rows.iter().map(|row| self.sought.per_unit * row.mean(samples)),
-            )
-        })
-    }
-}
-
-/// The law that is worth it, beside what is known.
-fn law(
-    case: &Case,
-    system: &System,
-    pool: &Pool,
-    beside: &[Part],
-    noises: &Noises,
-    sought: Sought,
-) -> Result<Option<Law>, DiagnoseError> {
-    let Some(whiteners) = noises.whiteners(&system.chunks) else { return Ok(None) };
-    let state = State { case, system, pool, fit: &case.fit };
-    let whitening = Whitening { system, whiteners, sought };
-    let runs = 0..case.runs.len();
-    // What a function does is taken away; all other causes are free beside the law.
-    let stand =
-        if beside.iter().any(|part| part.spread.is_some()) { state.settle(beside, noises) } else { None };
-    let mut residual = system.residual.clone();
-    for part in beside.iter().filter(|part| part.spread.is_some()) {
-        let Some(stand) = &stand else { continue };
-        for (residual, effect) in residual.iter_mut().zip(stand.effect(&state, part)) {
-            *residual -= effect;
-        }
-    }
-    let residual: Vec<Vec<f64>> =
-        runs.clone().map(|run| whitening.of(run, |index| residual[index].clone())).collect();
-    let parametric: Vec<Part> = beside.iter().filter(|part| part.spread.is_none()).cloned().collect();
-    let all_sd = state.sd();
-    let nuisances: Vec<Nuisance> = state
-        .columns(&parametric)
-        .into_iter()
-        .map(|column| Nuisance {
-            sd: all_sd[column],
-            runs: runs
-                .clone()
-                .map(|run| whitening.of(run, |index| pool.columns[column][index].clone()))
-                .collect(),
-        })
-        .collect();
-    let variables = variables(case, sought.kind);
-    let fit = enough(&case.fit, &residual);
-    let problem = Problem {
-        variables: &variables,
-        target: sought.target,
-        rows: &whitening,
-        residual: &residual,
-        nuisances: &nuisances,
-        fit: &fit,
-    };
-    let options = Options { seed: case.options.seed, ..Options::default() };
-    match find(&problem, &options, &|| case.progress.interrupted()) {
-        Ok(found) => Ok(found.law().cloned()),
-        Err(SymbolicError::Interrupted) => Err(DiagnoseError::Interrupted),
-        // What is no problem for it has no law either: no rows, a run without samples.
-        Err(_) => Ok(None),
-    }
-}
-
-/// The fitted runs that are enough to find a formula by: evenly taken among them where their rows are many. What is found is
-/// judged by all of them.
-fn enough(fit: &[bool], rows: &[Vec<f64>]) -> Vec<bool> {
-    const ENOUGH: usize = 7_000;
-    let all: usize = rows.iter().zip(fit).filter(|(_, fit)| **fit).map(|(rows, _)| rows.len()).sum();
-    let every = all.div_ceil(ENOUGH).max(1);
-    let mut fitted = 0;
-    let take = |fit: &bool| {
-        fitted += usize::from(*fit);
-        *fit && fitted % every == every / 2
-    };
-    fit.iter().map(take).collect()
-}
-
-/// Mass that rests on the wheels, sample by sample, where that is known to differ; loads of a drive are told by themselves.
-fn masses_kg(case: &Case) -> Option<Vec<Vec<f64>>> {
-    let priors = case.study.priors();
-    let of_run = |run: &crate::recorded::Recorded| {
-        let model = case.study.model(&run.measured, &priors).ok()?;
-        let trace = &run.measured.trace;
-        let carried = |index: usize| trace.get("payload_kg").map_or(0.0, |payload| payload[index]);
-        Some((0..trace.len()).map(|index| model.vehicle.mass_kg + carried(index)).collect())
-    };
-    case.runs.iter().map(of_run).collect()
-}
-
-/// What may stand in a law: of the situation, never made of what is to be explained.
-fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
-    /// Name, unit, samples of every run where they are known.
-    type Offered = (&'static str, &'static str, Option<Vec<Vec<f64>>>);
-    let channel = |name: &str| -> Option<Vec<Vec<f64>>> {
-        case.runs.iter().map(|run| run.measured.trace.get(name).map(<[f64]>::to_vec)).collect()
-    };
-    let of = |values: &dyn Fn(&crate::recorded::Recorded) -> Vec<f64>| {
-        Some(case.runs.iter().map(values).collect())
-    };
-    let block_s = crate::balance::block_s(kind, &case.runs, case.rows);
-    let speeds: Vec<f64> = case.runs.iter().flat_map(|run| run.motion.value.iter().copied()).collect();
-    let finest = |name: &str| match name {
-        "t" => BLOCKS * block_s,
-        "x" => BLOCKS * block_s * median(&speeds).abs(),
-        _ => 0.0,
-    };
-    // Where no torque was measured a power is made of the acceleration already.
-    let driven = || case.runs.iter().all(|run| run.measured.trace.get("motor_torque_n_m").is_some());
-    let acceleration = of(&|run| run.motion.slope.clone()).filter(|_| kind == Kind::Battery && driven());
-    let slope = channel("grade").map(|runs: Vec<Vec<f64>>| -> Vec<Vec<f64>> {
-        runs.iter().map(|grade| grade.iter().map(|grade| grade.atan().sin()).collect()).collect()
-    });
-    let offered: [Offered; 10] = [
-        ("v", "m/s", of(&|run| run.motion.value.clone())),
-        ("acceleration", "m/s²", acceleration),
-        ("x", "m", of(&|run| run.position_m.clone())),
-        ("t", "s", of(&|run| run.measured.trace.time_s().to_vec())),
-        ("heading", "rad", channel("heading_rad")),
-        ("kappa", "1/m", channel("curvature_per_m")),
-        ("temperature", "°C", channel("air_temperature_c")),
-        ("coasting", "1", channel("coasting")),
-        ("slope", "1", slope),
-        ("m", "kg", masses_kg(case)),
-    ];
-    let whole = |runs: &Vec<Vec<f64>>| runs.iter().flatten().all(|value| value.is_finite());
-    let variable = |(name, unit, runs): Offered| {
-        Some(Variable {
-            name: name.to_owned(),
-            unit: unit.to_owned(),
-            runs: runs.filter(whole)?,
-            finest: finest(name),
-        })
-    };
-    offered.into_iter().filter_map(variable).collect()
-}
-
 impl Cause {
     /// A consumer that is always on, whether or not any is among the causes that are tried.
-    fn consumer() -> Self {
+    pub fn consumer() -> Self {
         let text = LawText {
             role: "auxiliary_power",
             text: "power_w".to_owned(),
@@ -613,18 +436,5 @@ impl Cause {
             by_run: false,
             run: None,
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::enough;
-
-    #[test]
-    fn of_many_rows_a_share_of_the_runs_is_taken_evenly() {
-        let fit = [true, true, false, true, true, true, true];
-        assert_eq!(enough(&fit, &vec![vec![0.0; 10]; 7]), fit);
-        let few = enough(&fit, &vec![vec![0.0; 3000]; 7]);
-        assert_eq!(few, [true, false, false, false, true, false, false]);
     }
 }

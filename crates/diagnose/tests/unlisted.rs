@@ -85,6 +85,31 @@ fn a_drag_that_dies_away_with_speed_is_found_as_an_equation_that_runs() {
     is_found_as_a_law(FADING);
 }
 
+/// A driveline that loses more the faster it turns: no listed loss of the drive goes with speed alone.
+#[test]
+fn a_loss_that_goes_with_drive_and_speed_is_found_as_a_share_of_the_drive() {
+    /// Share that is lost at the speed below.
+    const SHARE: f64 = 0.15;
+    const AT_M_S: f64 = 5.0;
+    let hidden = format!(
+        r#"expression(loss_share: "n * v / v0_m_s", constants: {{"n": {SHARE}, "v0_m_s": {AT_M_S}}})"#
+    );
+    let found = found(&recorded(0.069, &hidden), &Options::default()).unwrap();
+    let said = &found.diagnosis;
+    assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);
+    assert!(said.findings[0].equation.starts_with("F = |F_drive| ("), "{}", said.findings[0].equation);
+    let registry = headland_stock::registry();
+    let improved = Scenario::of_text("improved.ron", &found.scenarios[0], Path::new(""), &registry).unwrap();
+    let model = improved.model(&registry).unwrap();
+    for speed_m_s in [3.0, 7.0] {
+        let situation = Situation { speed_m_s, ..Situation::default() };
+        let told: f64 =
+            model.effects.iter().map(|one| one.plugin.act(&situation, &[], &mut []).loss_share).sum();
+        let truth = SHARE * speed_m_s / AT_M_S;
+        assert!((told / truth - 1.0).abs() < 0.1, "{speed_m_s} m/s: {told}, {truth}: {}", said.answer);
+    }
+}
+
 /// The same tractor with an engine instead of a battery.
 fn with_an_engine(effects: &str) -> String {
     const ENGINE: &str = r#"EngineCvt(

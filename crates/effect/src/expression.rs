@@ -1,12 +1,13 @@
 //! A force or a power as a formula of the situation, for what has no effect of its own.
 //!
-//! R = f(…), F = f(…), P = f(…)        each a text in the notation of `expression/parser.rs`
+//! R = f(…), F = f(…), λ = f(…), P = f(…)        each a text in the notation of `expression/parser.rs`
 //!
 //! Source: the author of the scenario; empirical. Notation and units: `expression/names.rs` and `expression/units.rs`.
-//! A formula remembers nothing and does not know the force at the wheels. Units are checked when it is read: sums and
-//! comparisons need one unit, functions pure numbers, and the whole has to come out in newtons or watts.
+//! A formula remembers nothing and does not know the force at the wheels, of which a share may be lost. Units are checked
+//! when it is read: sums and comparisons need one unit, functions pure numbers, and the whole has to come out in newtons or
+//! watts, or as the pure number that a share is.
 //! Where a formula has no finite value the action has none either, nothing is clamped: a force stops the simulation, a
-//! power leaves the drive without any.
+//! power leaves the drive without any. A share of one or more has none either.
 //! Fingerprint: whatever it says.
 
 mod constants;
@@ -31,7 +32,7 @@ use program::Program;
 use serde::Deserialize;
 use std::path::Path;
 
-/// Formulas of up to four of the things that an effect can do.
+/// Formulas of up to five of the things that an effect can do.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Expression {
@@ -39,6 +40,8 @@ pub struct Expression {
     resistance: Option<String>,
     #[serde(default)]
     force: Option<String>,
+    #[serde(default)]
+    loss_share: Option<String>,
     #[serde(default)]
     auxiliary_power: Option<String>,
     #[serde(default)]
@@ -53,6 +56,8 @@ pub struct Expression {
     #[serde(skip)]
     force_n: Option<Program>,
     #[serde(skip)]
+    loss: Option<Program>,
+    #[serde(skip)]
     auxiliary_power_w: Option<Program>,
     #[serde(skip)]
     shaft_power_w: Option<Program>,
@@ -61,8 +66,8 @@ pub struct Expression {
 impl Plugin for Expression {
     const CARD: Card = Card {
         name: "expression",
-        about: "a force or a power as a formula of the situation",
-        equation: "R, F, P = + - * / ^ < <= > >= == != ( ) min max clamp abs sign sqrt pow exp ln log10 sin cos tanh of \
+        about: "a force, a loss of the drive or a power as a formula of the situation",
+        equation: "R, F, λ, P = + - * / ^ < <= > >= == != ( ) min max clamp abs sign sqrt pow exp ln log10 sin cos tanh of \
                    v [m/s] acceleration [m/s²] x [m] t [s] heading [rad] kappa [1/m] slope [1] elevation [m] temperature [°C] m [kg] \
                    g [m/s²] N [N] rho [kg/m³] area [m²] coasting [1] braking [1] headwind [m/s] crosswind [m/s] and \
                    constants",
@@ -77,6 +82,11 @@ impl Plugin for Expression {
                 "against the motion, R; each formula may be left out, not all",
             ),
             parameter("force", "N (formula)", "forward, F"),
+            parameter(
+                "loss_share",
+                "1 (formula)",
+                "share of the force of the drive that is lost on its way to the ground, λ",
+            ),
             parameter("auxiliary_power", "W (formula)", "electric power that is taken beside the drive, P"),
             parameter(
                 "shaft_power",
@@ -97,6 +107,7 @@ impl Plugin for Expression {
         let formulas = [
             ("resistance", &self.resistance, "N", &mut self.resistance_n),
             ("force", &self.force, "N", &mut self.force_n),
+            ("loss_share", &self.loss_share, "1", &mut self.loss),
             ("auxiliary_power", &self.auxiliary_power, "W", &mut self.auxiliary_power_w),
             ("shaft_power", &self.shaft_power, "W", &mut self.shaft_power_w),
         ];
@@ -112,7 +123,7 @@ impl Plugin for Expression {
             }
             if let Some(named) = compiled.acceleration {
                 if unit != "W" {
-                    let found = format!("`{}` in a force", Fault::quote(text, named));
+                    let found = format!("`{}` in what makes it", Fault::quote(text, named));
                     return Err(refuse(
                         name,
                         &found,
@@ -127,7 +138,8 @@ impl Plugin for Expression {
             *program = Some(compiled.program);
         }
         if !given {
-            let expected = "at least one of `resistance`, `force`, `auxiliary_power`, `shaft_power`";
+            let expected =
+                "at least one of `resistance`, `force`, `loss_share`, `auxiliary_power`, `shaft_power`";
             return Err(refuse("expression", "without a formula", expected));
         }
         match constants.iter().zip(used).find(|(_, used)| !used) {
@@ -140,6 +152,11 @@ impl Plugin for Expression {
     }
 }
 
+/// A share; NaN where it is none, because a drive that loses all its force or as much again moves nothing.
+fn share(value: f64) -> f64 {
+    if value.abs() < 1.0 { value } else { f64::NAN }
+}
+
 impl Effect for Expression {
     fn follows_acceleration(&self) -> bool {
         self.follows
@@ -150,6 +167,7 @@ impl Effect for Expression {
         Action {
             resistance_n: value(&self.resistance_n),
             force_n: value(&self.force_n),
+            loss_share: share(value(&self.loss)),
             auxiliary_power_w: value(&self.auxiliary_power_w),
             shaft_power_w: value(&self.shaft_power_w),
             ..Action::default()

@@ -23,7 +23,7 @@ pub struct Constant {
 /// A law and how it fared.
 #[derive(Clone, Debug)]
 pub struct Law {
-    /// The formula, in newtons or watts.
+    /// The formula, in the unit of its target.
     pub text: String,
     /// Its constants, in the order in which the text names them.
     pub constants: Vec<Constant>,
@@ -43,7 +43,7 @@ pub struct Law {
     pub explained: f64,
     /// The same on runs that were never fitted; none where there are none.
     pub unseen: Option<f64>,
-    /// What it says, sample by sample, of every run [N or W].
+    /// What it says, sample by sample, of every run, in the unit of its target.
     pub prediction: Vec<Vec<f64>>,
     /// Its terms by themselves, each a law with the numbers that it has here, where there are several.
     pub each: Vec<Law>,

@@ -11,21 +11,24 @@ pub enum Target {
     Force,
     /// Watts.
     Power,
+    /// A pure number: the share of the drive force that is lost on its way.
+    Share,
 }
 
 impl Target {
     /// The target of a unit.
     ///
     /// # Errors
-    /// [`SymbolicError::Unit`] where it is neither `N` nor `W`.
+    /// [`SymbolicError::Unit`] where it is none of `N`, `W` and `1`.
     pub fn of_unit(unit: &str) -> Result<Self, SymbolicError> {
         match unit.trim() {
             "N" => Ok(Self::Force),
             "W" => Ok(Self::Power),
+            "1" => Ok(Self::Share),
             other => Err(SymbolicError::Unit {
                 name: "the target".to_owned(),
                 found: other.to_owned(),
-                expected: "N or W".to_owned(),
+                expected: "N, W or 1".to_owned(),
             }),
         }
     }
@@ -35,6 +38,7 @@ impl Target {
         match self {
             Self::Force => "N",
             Self::Power => "W",
+            Self::Share => "1",
         }
     }
 
@@ -42,6 +46,7 @@ impl Target {
         match self {
             Self::Force => "_n",
             Self::Power => "_w",
+            Self::Share => "",
         }
     }
 }
@@ -51,7 +56,7 @@ impl Target {
 /// For a weak form: means of the samples with the test function as weight, then the inverse of a Cholesky factor of the
 /// rows' covariance.
 pub trait Rows: Sync {
-    /// The rows of one run; `samples` are in newtons or watts, one for each sample of the run.
+    /// The rows of one run; `samples` are in the unit of the target, one for each sample of the run.
     fn rows(&self, run: usize, samples: &[f64]) -> Vec<f64>;
 }
 

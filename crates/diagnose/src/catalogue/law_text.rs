@@ -1,6 +1,6 @@
 //! An equation that was found, as a scenario writes it.
 
-use crate::balance::Kind;
+use headland_symbolic::Target;
 
 /// Channels that the variables of a formula are read from.
 pub const CHANNELS: [(&str, &str); 10] = [
@@ -37,11 +37,15 @@ pub struct LawText {
 
 impl LawText {
     /// The text of a law of a balance.
-    pub fn new(law: &headland_symbolic::Law, kind: Kind) -> Self {
+    pub fn new(law: &headland_symbolic::Law, target: Target) -> Self {
         /// Every piece of it was one of about a dozen: ln of that.
         const PER_PIECE: f64 = 2.5;
         Self {
-            role: if kind == Kind::Motion { "resistance" } else { "auxiliary_power" },
+            role: match target {
+                Target::Force => "resistance",
+                Target::Share => "loss_share",
+                Target::Power => "auxiliary_power",
+            },
             text: law.text.clone(),
             constants_text: law.constants_text(),
             constants: law.constants.clone(),
@@ -49,6 +53,7 @@ impl LawText {
                 .into_iter()
                 .filter(|(name, _)| law.names(name))
                 .map(|(_, channel)| channel)
+                .chain((target == Target::Share).then_some("tractive_force_n"))
                 .collect(),
             terms: law.terms,
             cost: PER_PIECE * law.complexity as f64,

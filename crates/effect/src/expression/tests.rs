@@ -125,6 +125,21 @@ fn each_formula_acts_where_it_is_said_to() {
     assert!(same(action.auxiliary_power_w, 750.0) && same(action.shaft_power_w, 2000.0), "{action:?}");
 }
 
+/// 0.04 · 10 m/s / (5 m/s) = 0.08 of the drive's force; all of it, or as much again, is no share.
+#[test]
+fn a_share_of_the_drive_may_be_lost_and_never_all_of_it() {
+    let lost = |share: f64| {
+        let text =
+            format!("(loss_share: \"n * v / v0_m_s\", constants: {{\"n\": {share:?}, \"v0_m_s\": 5.0}})");
+        act::<Expression>(&text, &at_10_m_s())
+    };
+    let action = lost(0.04);
+    assert!(same(action.loss_share, 0.08) && same(action.resistance_n, 0.0), "{action:?}");
+    assert!(lost(0.5).loss_share.is_nan() && lost(-0.5).loss_share.is_nan());
+    let message = build::<Expression>("(loss_share: \"f_n\", constants: {\"f_n\": 1.0})").unwrap_err();
+    assert!(message.contains("in N, expected a formula in 1"), "{message}");
+}
+
 #[test]
 fn constants_are_in_the_units_of_their_names() {
     assert!(same(force_n("one_n * sin(a_deg)", "\"a_deg\": 30.0"), 0.5));
@@ -220,7 +235,7 @@ fn a_power_may_name_the_acceleration_and_a_force_may_not() {
     let force = "(force: \"k_kg * acceleration\", constants: {\"k_kg\": 5.0})";
     let message = build::<Expression>(force).unwrap_err();
     assert!(
-        message.contains("`acceleration` in a force") && message.contains("powers may name it"),
+        message.contains("`acceleration` in what makes it") && message.contains("powers may name it"),
         "{message}"
     );
 }

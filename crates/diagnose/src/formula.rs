@@ -1,0 +1,245 @@
+//! What a formula is looked for in: the rows of one balance, beside what is known, and what may stand in it.
+
+use crate::balance::Kind;
+use crate::catalogue::Cause;
+use crate::noise::{Noises, Whiteners};
+use crate::state::{Part, State};
+use crate::trial::{Pool, effect, lost_drive_n};
+use crate::{Case, DiagnoseError, System};
+use headland_calibrate::statistics::median;
+use headland_symbolic::{Law, Nuisance, Options, Problem, Rows, SymbolicError, Target, Variable, find};
+
+/// A wave takes so many blocks of samples.
+const BLOCKS: f64 = 4.0;
+
+/// What is sought in a balance.
+pub struct Sought {
+    /// The balance.
+    pub kind: Kind,
+    /// What the formula is.
+    pub target: Target,
+    /// What one newton or one watt makes of the balance's rows.
+    per_unit: f64,
+    /// Of what a share is lost, sample by sample [N], where a share is sought.
+    whole: Option<Vec<Vec<f64>>>,
+}
+
+impl Sought {
+    /// A formula of a balance; none where nothing has such a formula.
+    pub fn new(
+        case: &Case,
+        system: &System,
+        kind: Kind,
+        target: Target,
+    ) -> Result<Option<Self>, DiagnoseError> {
+        if target == Target::Share && !case.driven() {
+            return Ok(None);
+        }
+        let whole = if target == Target::Share { Some(lost_drive_n(case)?) } else { None };
+        let per_unit = if kind == Kind::Fuel { fuel_per_watt(case, system)? } else { 1.0 };
+        Ok(Some(Self { kind, target, per_unit, whole }))
+    }
+
+    /// What the balance's rows are made of, of what a formula says of a run.
+    pub fn samples(&self, run: usize, said: &[f64]) -> Vec<f64> {
+        let whole = |index: usize| self.whole.as_ref().map_or(1.0, |whole| whole[run][index]);
+        said.iter().enumerate().map(|(index, value)| self.per_unit * whole(index) * value).collect()
+    }
+
+    /// What may stand in the formula. What is lost on the way of a force is no matter of places or times.
+    fn variables(&self, case: &Case) -> Vec<Variable> {
+        const OF_A_DRIVE: [&str; 3] = ["v", "temperature", "m"];
+        let mut all = variables(case, self.kind);
+        if self.target == Target::Share {
+            all.retain(|variable| OF_A_DRIVE.contains(&variable.name.as_str()));
+        }
+        all
+    }
+}
+
+/// Power in the fuel that a consumer of one watt takes, on average.
+fn fuel_per_watt(case: &Case, system: &System) -> Result<f64, DiagnoseError> {
+    /// A consumer of a usual size [W].
+    const USUAL_W: f64 = 1000.0;
+    let consumer = Cause::consumer();
+    let column = effect(case, system, &consumer, USUAL_W, &|_| consumer.written(&[USUAL_W]))?;
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (chunk, rows) in system.chunks.iter().zip(&column) {
+        if system.kind(chunk) == Kind::Fuel && case.fit[chunk.run] {
+            sum += rows.sum();
+            count += rows.len() as f64;
+        }
+    }
+    Ok(if sum > 0.0 { sum / count } else { 1.0 })
+}
+
+/// From samples to whitened rows of one balance.
+struct Whitening<'a> {
+    system: &'a System,
+    whiteners: Whiteners,
+    sought: &'a Sought,
+}
+
+impl Whitening<'_> {
+    fn of(&self, run: usize, values: impl Fn(usize) -> nalgebra::DVector<f64>) -> Vec<f64> {
+        let chunks = self.system.chunks.iter().enumerate();
+        let own = chunks.filter(|(_, chunk)| chunk.run == run && self.system.kind(chunk) == self.sought.kind);
+        own.flat_map(|(index, chunk)| {
+            self.whiteners.white(index, chunk, &values(index)).iter().copied().collect::<Vec<_>>()
+        })
+        .collect()
+    }
+}
+
+impl Rows for Whitening<'_> {
+    fn rows(&self, run: usize, samples: &[f64]) -> Vec<f64> {
+        let samples = self.sought.samples(run, samples);
+        self.of(run, |index| {
+            let rows = &self.system.chunks[index].rows;
+            nalgebra::DVector::from_iterator(rows.len(), rows.iter().map(|row| row.mean(&samples)))
+        })
+    }
+}
+
+/// The law that is worth it, beside what is known.
+pub fn law(
+    case: &Case,
+    system: &System,
+    pool: &Pool,
+    beside: &[Part],
+    noises: &Noises,
+    sought: &Sought,
+) -> Result<Option<Law>, DiagnoseError> {
+    let Some(whiteners) = noises.whiteners(&system.chunks) else { return Ok(None) };
+    let state = State { case, system, pool, fit: &case.fit };
+    let whitening = Whitening { system, whiteners, sought };
+    let runs = 0..case.runs.len();
+    // What a function does is taken away; all other causes are free beside the law.
+    let stand =
+        if beside.iter().any(|part| part.spread.is_some()) { state.settle(beside, noises) } else { None };
+    let mut residual = system.residual.clone();
+    for part in beside.iter().filter(|part| part.spread.is_some()) {
+        let Some(stand) = &stand else { continue };
+        for (residual, effect) in residual.iter_mut().zip(stand.effect(&state, part)) {
+            *residual -= effect;
+        }
+    }
+    let residual: Vec<Vec<f64>> =
+        runs.clone().map(|run| whitening.of(run, |index| residual[index].clone())).collect();
+    let parametric: Vec<Part> = beside.iter().filter(|part| part.spread.is_none()).cloned().collect();
+    let all_sd = state.sd();
+    let nuisances: Vec<Nuisance> = state
+        .columns(&parametric)
+        .into_iter()
+        .map(|column| Nuisance {
+            sd: all_sd[column],
+            runs: runs
+                .clone()
+                .map(|run| whitening.of(run, |index| pool.columns[column][index].clone()))
+                .collect(),
+        })
+        .collect();
+    let variables = sought.variables(case);
+    let fit = enough(&case.fit, &residual);
+    let problem = Problem {
+        variables: &variables,
+        target: sought.target,
+        rows: &whitening,
+        residual: &residual,
+        nuisances: &nuisances,
+        fit: &fit,
+    };
+    let options = Options { seed: case.options.seed, ..Options::default() };
+    match find(&problem, &options, &|| case.progress.interrupted()) {
+        Ok(found) => Ok(found.law().cloned()),
+        Err(SymbolicError::Interrupted) => Err(DiagnoseError::Interrupted),
+        // What is no problem for it has no law either: no rows, a run without samples.
+        Err(_) => Ok(None),
+    }
+}
+
+/// The fitted runs that are enough to find a formula by: evenly taken among them where their rows are many. What is found is
+/// judged by all of them.
+fn enough(fit: &[bool], rows: &[Vec<f64>]) -> Vec<bool> {
+    const ENOUGH: usize = 7_000;
+    let all: usize = rows.iter().zip(fit).filter(|(_, fit)| **fit).map(|(rows, _)| rows.len()).sum();
+    let every = all.div_ceil(ENOUGH).max(1);
+    let mut fitted = 0;
+    let take = |fit: &bool| {
+        fitted += usize::from(*fit);
+        *fit && fitted % every == every / 2
+    };
+    fit.iter().map(take).collect()
+}
+
+/// Mass that rests on the wheels, sample by sample, where that is known to differ; loads of a drive are told by themselves.
+fn masses_kg(case: &Case) -> Option<Vec<Vec<f64>>> {
+    let priors = case.study.priors();
+    let of_run = |run: &crate::recorded::Recorded| {
+        let model = case.study.model(&run.measured, &priors).ok()?;
+        let trace = &run.measured.trace;
+        let carried = |index: usize| trace.get("payload_kg").map_or(0.0, |payload| payload[index]);
+        Some((0..trace.len()).map(|index| model.vehicle.mass_kg + carried(index)).collect())
+    };
+    case.runs.iter().map(of_run).collect()
+}
+
+/// What may stand in a law: of the situation, never made of what is to be explained.
+fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
+    /// Name, unit, samples of every run where they are known.
+    type Offered = (&'static str, &'static str, Option<Vec<Vec<f64>>>);
+    let channel = |name: &str| -> Option<Vec<Vec<f64>>> {
+        case.runs.iter().map(|run| run.measured.trace.get(name).map(<[f64]>::to_vec)).collect()
+    };
+    let of = |values: &dyn Fn(&crate::recorded::Recorded) -> Vec<f64>| {
+        Some(case.runs.iter().map(values).collect())
+    };
+    let block_s = crate::balance::block_s(kind, &case.runs, case.rows);
+    let speeds: Vec<f64> = case.runs.iter().flat_map(|run| run.motion.value.iter().copied()).collect();
+    let finest = |name: &str| match name {
+        "t" => BLOCKS * block_s,
+        "x" => BLOCKS * block_s * median(&speeds).abs(),
+        _ => 0.0,
+    };
+    // Where no torque was measured a power is made of the acceleration already.
+    let driven = || case.runs.iter().all(|run| run.measured.trace.get("motor_torque_n_m").is_some());
+    let acceleration = of(&|run| run.motion.slope.clone()).filter(|_| kind == Kind::Battery && driven());
+    let slope = channel("grade").map(|runs: Vec<Vec<f64>>| -> Vec<Vec<f64>> {
+        runs.iter().map(|grade| grade.iter().map(|grade| grade.atan().sin()).collect()).collect()
+    });
+    let offered: [Offered; 10] = [
+        ("v", "m/s", of(&|run| run.motion.value.clone())),
+        ("acceleration", "m/s²", acceleration),
+        ("x", "m", of(&|run| run.position_m.clone())),
+        ("t", "s", of(&|run| run.measured.trace.time_s().to_vec())),
+        ("heading", "rad", channel("heading_rad")),
+        ("kappa", "1/m", channel("curvature_per_m")),
+        ("temperature", "°C", channel("air_temperature_c")),
+        ("coasting", "1", channel("coasting")),
+        ("slope", "1", slope),
+        ("m", "kg", masses_kg(case)),
+    ];
+    let whole = |runs: &Vec<Vec<f64>>| runs.iter().flatten().all(|value| value.is_finite());
+    let variable = |(name, unit, runs): Offered| {
+        Some(Variable {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            runs: runs.filter(whole)?,
+            finest: finest(name),
+        })
+    };
+    offered.into_iter().filter_map(variable).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::enough;
+
+    #[test]
+    fn of_many_rows_a_share_of_the_runs_is_taken_evenly() {
+        let fit = [true, true, false, true, true, true, true];
+        assert_eq!(enough(&fit, &vec![vec![0.0; 10]; 7]), fit);
+        let few = enough(&fit, &vec![vec![0.0; 3000]; 7]);
+        assert_eq!(few, [true, false, false, false, true, false, false]);
+    }
+}

@@ -161,7 +161,8 @@ pub fn text(case: &Case, cured: &Cured, run: usize) -> Option<String> {
     if cured.cause.by_run {
         // A run that seems to be pulled by less than nothing is pulled by nothing: within its width that is what it can be.
         let term = &cured.cause.terms[0];
-        return Some(cured.cause.constant(function.values[run].0.mean().clamp(term.low, term.high)));
+        let value = function.values[run].0.mean().clamp(term.low, term.high);
+        return Some(cured.cause.constant(value, &cured.accepted.trial.shape));
     }
     let over_position = cured.cause.form == Form::OverPosition;
     let group = if over_position { drive.path } else { run };
@@ -267,7 +268,8 @@ pub fn reconstruct(
         case.runs.iter().enumerate().map(of_run).collect()
     } else if let Some(function) = cured.function() {
         let even = cured.cause.terms[0].scale;
-        let after = case.said_with(&|_: &Recorded| cured.cause.constant(even), &values, &[kind])?;
+        let text = cured.cause.constant(even, &cured.accepted.trial.shape);
+        let after = case.said_with(&|_: &Recorded| text.clone(), &values, &[kind])?;
         let mut series = told(&after);
         for (run, (samples, recorded)) in series.iter_mut().zip(&case.runs).enumerate() {
             let time_s = recorded.measured.trace.time_s();

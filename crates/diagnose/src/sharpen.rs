@@ -39,7 +39,8 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
     let mut consider = |cause: usize, shape: &[f64]| {
         let free = case.causes[cause].terms.iter().any(|term| !term.linear && term.low < term.high);
         let known = chosen.iter().any(|(own, _)| *own == cause);
-        if free && !known && case.causes[cause].form == Form::Parameters {
+        let cause_of = &case.causes[cause];
+        if free && !known && (cause_of.form == Form::Parameters || cause_of.by_run) {
             chosen.push((cause, shape.to_vec()));
         }
     };
@@ -102,6 +103,8 @@ fn best(
 ) -> Result<Vec<f64>, DiagnoseError> {
     let (columns, trials) = (pool.columns.len(), pool.trials.len());
     let accepted = found.accepted.iter().find(|one| how != How::ByItself && one.trial.cause == cause);
+    let own = found.accepted.iter().find(|one| one.trial.cause == cause);
+    let spread = own.and_then(|one| one.function.as_ref()).map(|function| function.spread.clone());
     let wanted = accepted.filter(|_| how == How::Beside).map(|one| one.trial.terms.clone());
     // Beside the other accepted causes, but for functions.
     let others: Vec<Part> = found
@@ -126,7 +129,7 @@ fn best(
             .filter(|trial| wanted.as_ref().is_none_or(|terms| *terms == trial.terms));
         let judged = new.filter_map(|trial| {
             let mut parts = others.clone();
-            parts.push(Part { trial: trial.clone(), spread: None });
+            parts.push(Part { trial: trial.clone(), spread: spread.clone() });
             state.likely(&parts, &noises)
         });
         let greatest = judged.fold(f64::NEG_INFINITY, f64::max);

@@ -219,7 +219,7 @@ fn wide(value: f64, bounds: (f64, f64)) -> f64 {
 /// The effect that stands for one term of a cause, as it is written for a run.
 fn signature(cause: &Cause, term: usize, step: f64, shape: &[f64], run: &Recorded) -> String {
     if matches!(cause.form, Form::OverPosition | Form::OverTime) {
-        return cause.constant(step);
+        return cause.constant(step, shape);
     }
     let mut held = shape.iter();
     let value = |(index, part): (usize, &crate::catalogue::Term)| match part.linear {

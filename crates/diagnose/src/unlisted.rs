@@ -200,13 +200,10 @@ fn is_map(law: &Law) -> bool {
 
 /// Whether a term of a law may as well be none: several that take each other back say nothing of any.
 fn is_undetermined(law: &Law) -> bool {
-    let amplitude = |name: &str| {
-        name.strip_prefix('a').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
-    };
     let nothing = |constant: &headland_symbolic::Constant| {
         constant.sd.is_some_and(|sd| constant.value.abs() < crate::refine::HALF_95 * sd)
     };
-    law.constants.iter().any(|constant| amplitude(&constant.name) && nothing(constant))
+    law.constants.iter().any(|constant| constant.is_amplitude() && nothing(constant))
 }
 
 impl State<'_> {

@@ -20,6 +20,14 @@ pub struct Constant {
     pub unit: String,
 }
 
+impl Constant {
+    /// Whether it is what a term is multiplied by: `a1_n`, and no scale or place of a variable.
+    pub fn is_amplitude(&self) -> bool {
+        let number = self.name.strip_prefix('a');
+        number.is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
+    }
+}
+
 /// A law and how it fared.
 #[derive(Clone, Debug)]
 pub struct Law {

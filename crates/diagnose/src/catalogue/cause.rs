@@ -201,9 +201,12 @@ impl Cause {
         }
     }
 
-    /// The effect of a function that has one value throughout, as a scenario writes it.
-    pub fn constant(&self, value: f64) -> String {
-        self.even().map_or_else(String::new, |(id, name)| format!("{id}({name}: {value:?})"))
+    /// The effect of a function that has one value throughout, as a scenario writes it, with its non-linear parameters.
+    pub fn constant(&self, value: f64, shape: &[f64]) -> String {
+        let Some((id, name)) = self.even() else { return String::new() };
+        let held = self.terms.iter().filter(|term| !term.linear).zip(shape);
+        let held: String = held.map(|(term, value)| format!(", {}: {value:?}", term.name)).collect();
+        format!("{id}({name}: {value:?}{held})")
     }
 
     /// Whether a value of a term is what it cannot be.

@@ -46,26 +46,23 @@ pub fn powers(all: &mut Vec<Cause>, around: &Around) {
         "more friction of the engine",
         "motor the engine, or idle at two speeds",
     ));
-    // An engine that was driven just before starts warm, so that often one run alone starts cold.
-    let once = around.beginnings.iter().map(|run| Some(*run));
-    for run in std::iter::once(None).chain(once) {
-        let cold = cause(
+    // An engine that was driven just before starts warm, so that often one run alone starts cold, or each as cold as it is.
+    let cold = |words| {
+        cause(
             "cold_start",
             &[Kind::Fuel],
             vec![positive("cold_torque_n_m", "N m", 30.0), fading(around)],
             "P = T e^(−t/τ) ω / e",
             &["time_s", "engine_speed_rad_s"],
-            if run.is_some() {
-                "an engine that starts cold in one of the runs"
-            } else {
-                "an engine that starts cold"
-            },
+            words,
             "repeat the cycle with the engine warm",
         )
-        .shaped([60.0, 150.0, 400.0, 900.0].iter().map(|tau| vec![*tau]).collect());
-        all.push(match run {
-            Some(run) => cold.in_run(run),
-            None => cold,
-        });
+        .shaped([60.0, 150.0, 400.0, 900.0].iter().map(|tau| vec![*tau]).collect())
+    };
+    all.push(cold("an engine that starts cold"));
+    let once = around.beginnings.iter();
+    all.extend(once.map(|run| cold("an engine that starts cold in one of the runs").in_run(*run)));
+    if !around.beginnings.is_empty() {
+        all.push(cold("an engine that starts as cold as it is in each run").by_run());
     }
 }

@@ -218,12 +218,16 @@ fn parameters(cured: &Cured) -> Vec<ParameterReport> {
         unit: unit.to_owned(),
     };
     if let Some(function) = cured.function() {
-        return function_parameters(&cured.cause, function);
+        let mut told = function_parameters(&cured.cause, function);
+        let held = cured.cause.terms.iter().filter(|term| !term.linear).zip(&cured.accepted.trial.shape);
+        // It was chosen among several that lie a factor of two apart, and moved between them.
+        told.extend(held.map(|(term, value)| one(term.name, *value, [0.5 * value, 2.0 * value], term.unit)));
+        return told;
     }
     if let (Some(law), Some((factor, _))) = (&cured.cause.law, cured.values.first()) {
-        // Amplitudes come out in newtons or watts; the factor that was estimated beside belongs to them.
+        // The factor that was estimated beside belongs to the amplitudes.
         let constant = |constant: &headland_symbolic::Constant| {
-            let factor = if ["N", "W"].contains(&constant.unit.as_str()) { *factor } else { 1.0 };
+            let factor = if constant.is_amplitude() { *factor } else { 1.0 };
             let value = factor * constant.value;
             let half = HALF_95 * (factor * constant.sd.unwrap_or(0.0)).abs();
             one(&constant.name, value, [value - half, value + half], &constant.unit)

@@ -63,7 +63,7 @@ const MOTION: &[Kind] = &[Kind::Motion, Kind::Battery, Kind::Fuel];
 
 /// A time constant; what takes many times as long as the longest run does not change within it.
 fn fading(around: &Around) -> Term {
-    const MOST_RUNS: f64 = 8.0;
+    const MOST_RUNS: f64 = 3.0;
     shape("time_constant_s", "s").within(0.0, MOST_RUNS * around.duration_s)
 }
 

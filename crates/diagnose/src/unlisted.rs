@@ -190,12 +190,14 @@ fn beside(
     Ok(found)
 }
 
-/// Whether a law draws a map beside something else, or several shapes of one: softer ground and slopes are that by their
-/// definition.
+/// Whether a law draws a map: softer ground and slopes are that by their definition, beside something else or in several
+/// shapes of one. A wave that goes on along the whole path is none.
 fn is_map(law: &Law) -> bool {
+    const WAVE: &str = "sin";
     let only_x = |term: &[&str]| !term.is_empty() && term.iter().all(|name| *name == "x");
     let terms = law.variables_of_terms();
-    terms.len() > 1 && terms.iter().any(|term| only_x(term))
+    let alone = terms.len() == 1 && law.names(WAVE);
+    !alone && terms.iter().any(|term| only_x(term))
 }
 
 /// Whether a term of a law may as well be none: several that take each other back say nothing of any.

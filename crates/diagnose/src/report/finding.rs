@@ -114,20 +114,25 @@ pub fn faulty(fault: &Fault, system: &System) -> FindingReport {
     }
 }
 
-/// Whether it is in doubt what a finding is: between faults of one sensor the doubt makes no difference.
-fn doubtful(finding: &FindingReport) -> bool {
-    let fault = |id: &str| ["accelerometer_bias", "accelerometer_tilt"].contains(&id);
-    finding.indistinguishable_from.iter().any(|rival| !(fault(&finding.id) && fault(&rival.id)))
+impl FindingReport {
+    /// Whether it is in doubt what it is: between faults of one sensor the doubt makes no difference.
+    pub(crate) fn is_doubtful(&self) -> bool {
+        let fault = |id: &str| ["accelerometer_bias", "accelerometer_tilt"].contains(&id);
+        self.indistinguishable_from.iter().any(|rival| !(fault(&self.id) && fault(&rival.id)))
+    }
 }
 
-/// What a diagnosis says in a word.
+/// What a diagnosis says in a word. Beside what is certain, one cause in doubt leaves open what is missing; it takes nothing
+/// from a sensor's fault.
 pub fn verdict(findings: &[FindingReport]) -> Verdict {
     let any = |kind: FindingKind| findings.iter().any(|finding| finding.kind == kind);
     if findings.is_empty() {
         Verdict::None
     } else if findings.first().is_some_and(|finding| finding.kind == FindingKind::Unlisted) {
         Verdict::Unlisted
-    } else if findings.first().is_some_and(doubtful) {
+    } else if findings.first().is_some_and(FindingReport::is_doubtful)
+        || !any(FindingKind::Artefact) && findings.iter().any(FindingReport::is_doubtful)
+    {
         Verdict::CannotTell
     } else if any(FindingKind::Physics) && any(FindingKind::Artefact) {
         Verdict::Both

@@ -42,7 +42,12 @@ pub fn answer(told: &Told) -> String {
                 .to_owned(),
         ),
         Verdict::CannotTell if told.withheld.is_none() => sentences.push(
-            "Something is missing, and these recordings cannot tell which of several causes it is.".to_owned(),
+            if told.findings.first().is_some_and(FindingReport::is_doubtful) {
+                "Something is missing, and these recordings cannot tell which of several causes it is."
+            } else {
+                "Something is missing, and of a part of it these recordings cannot tell which of several causes it is."
+            }
+            .to_owned(),
         ),
         _ => {}
     }
@@ -52,9 +57,9 @@ pub fn answer(told: &Told) -> String {
     sentences.push(proof(told));
     sentences.extend(left_over(told));
     if told.verdict == Verdict::CannotTell
-        && let Some(first) = told.findings.first()
+        && let Some(open) = told.findings.iter().find(|finding| finding.is_doubtful())
     {
-        sentences.push(format!("To tell, {}.", first.next_experiment));
+        sentences.push(format!("To tell, {}.", open.next_experiment));
     }
     spoken(&sentences.join(" "))
 }

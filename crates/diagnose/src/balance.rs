@@ -196,6 +196,11 @@ impl System {
         self.chunks.iter().map(|chunk| chunk.rows.len()).sum()
     }
 
+    /// How many rows one balance has.
+    pub fn row_count_of(&self, kind: Kind) -> usize {
+        self.chunks.iter().filter(|chunk| self.kind(chunk) == kind).map(|chunk| chunk.rows.len()).sum()
+    }
+
     /// The balance of a chunk.
     pub fn kind(&self, chunk: &Chunk) -> Kind {
         self.kinds[chunk.balance]

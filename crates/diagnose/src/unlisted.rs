@@ -49,7 +49,7 @@ pub fn unlisted(
             let cause = &case.causes[part.trial.cause];
             kind != Kind::Motion && cause.form == Form::OverTime && cause.balances.contains(&kind)
         });
-        let any = any && system.row_count() > MANY_ROWS;
+        let any = any && system.row_count_of(kind) > MANY_ROWS;
         if system.has(kind)
             && !any
             && let Some(sought) = Sought::new(case, system, kind, target)?
@@ -73,7 +73,7 @@ fn candidates(
     let mut candidates: Vec<Vec<Part>> = Vec::new();
     // Of many rows a formula takes long to find, and where functions are needed none does by itself.
     let functions = listed.iter().any(|part| part.spread.is_some());
-    let rows = system.row_count();
+    let rows = system.row_count_of(sought.kind);
     let mut starts = if functions && rows > MANY_ROWS { Vec::new() } else { vec![Vec::new()] };
     if !listed.is_empty() {
         starts.push(listed);
@@ -119,7 +119,7 @@ fn beside(
     found: Found,
     sought: &Sought,
 ) -> Result<Found, DiagnoseError> {
-    let rows = system.row_count();
+    let rows = system.row_count_of(sought.kind);
     let candidates = candidates(case, system, pool, &found, sought)?;
     let state = State { case, system, pool, fit: &case.fit };
     let alone = found.tried.first().and_then(|round| round.causes.first()).map_or(0.0, |one| one.2);

@@ -212,14 +212,18 @@ impl State<'_> {
     /// How much better than what was found a set with a law has to be. What differs from run to run has no shape that would
     /// be known from elsewhere.
     fn margin(&self, found: &Found, simpler: bool) -> f64 {
-        let shaped = found.stand.parts.iter().filter(|part| !self.cause(&part.trial).by_run).count();
+        let (shapeless, shaped): (Vec<Part>, Vec<Part>) =
+            found.stand.parts.iter().cloned().partition(|part| self.cause(&part.trial).by_run);
+        let alone = if shapeless.is_empty() { None } else { self.settle(&shapeless, &found.stand.noises) };
+        let brought = worth(&found.stand) - worth(alone.as_ref().unwrap_or(&found.first));
+        let shaped = shaped.len();
         let fewer = match (shaped, found.stand.parts.len()) {
             (0, 0) => 0.0,
             (0, _) => 1.0,
             _ => 3usize.saturating_sub(shaped).max(usize::from(simpler)) as f64,
         };
         let share = if simpler { SIMPLER } else { BETTER };
-        MARGIN + share * fewer * (worth(&found.stand) - worth(&found.first)).max(0.0)
+        MARGIN + share * fewer * brought.max(0.0)
     }
 
     /// Whether a set leaves the free parameters where they are known to be, or at least where another has them: a law that

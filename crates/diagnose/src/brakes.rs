@@ -93,18 +93,23 @@ fn excess_n(run: &Recorded, said: &Said, sound: &[bool]) -> Option<Vec<f64>> {
     Some(averaged(trace.time_s(), &raw))
 }
 
-/// Mean over [`WINDOW_S`] around each sample that is known, where it has others on both sides: at an end, what is left of the
-/// window is noisier than the rest.
+/// Mean over [`WINDOW_S`], or over a few samples where those are rarer, around each sample that is known, where it has others on
+/// both sides: at an end, what is left of the window is noisier than the rest.
 fn averaged(time_s: &[f64], values: &[f64]) -> Vec<f64> {
     /// Samples on the one side for each on the other, at most.
     const LOPSIDED: usize = 2;
+    /// Samples that are rare and come a little early or late still have one on each side.
+    const STEPS: f64 = 3.0;
+    let steps = sorted(&time_s.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<_>>());
+    let usual_s = if steps.is_empty() { 0.0 } else { quantile_of_sorted(&steps, 0.5) };
+    let window_s = WINDOW_S.max(STEPS * usual_s);
     let (mut from, mut to) = (0, 0);
     (0..values.len())
         .map(|index| {
-            while time_s[from] < time_s[index] - 0.5 * WINDOW_S {
+            while time_s[from] < time_s[index] - 0.5 * window_s {
                 from += 1;
             }
-            while to < values.len() && time_s[to] <= time_s[index] + 0.5 * WINDOW_S {
+            while to < values.len() && time_s[to] <= time_s[index] + 0.5 * window_s {
                 to += 1;
             }
             let known =
@@ -175,6 +180,14 @@ fn event(run: &Recorded, number: usize, excess: &[f64], (from, to): (usize, usiz
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rare_samples_that_come_early_and_late_are_averaged_as_well() {
+        let time_s: Vec<f64> =
+            (0..40).map(|index| 0.2 * f64::from(index) + 0.07 * f64::from(index % 3)).collect();
+        let mean = averaged(&time_s, &[2.0; 40]);
+        assert!(mean[2..38].iter().all(|value| (value - 2.0).abs() < 1e-12), "{mean:?}");
+    }
 
     #[test]
     fn a_mean_over_a_window_leaves_out_what_is_not_known() {

@@ -2,6 +2,7 @@
 
 use crate::recorded::Recorded;
 use crate::report::Interval;
+use headland_calibrate::statistics::{quantile_of_sorted, sorted};
 use headland_trace::Trace;
 
 /// A fault of a channel.
@@ -133,13 +134,7 @@ fn usual_length(equal: &[(usize, usize)], samples: usize) -> f64 {
 /// Whether the noise of a channel moves it to and fro all the time, but for a few long stretches.
 fn noisy(values: &[f64], equal: &[(usize, usize)]) -> bool {
     let samples = values.len();
-    let moves: Vec<f64> = values
-        .windows(2)
-        .map(|pair| pair[1] - pair[0])
-        .filter(|step| step.is_finite() && *step != 0.0)
-        .collect();
-    let turns = moves.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count();
-    if (turns as f64) < TURNS * moves.len() as f64 {
+    if turns(values) < TURNS {
         return false;
     }
     let repeats = |long: bool| -> usize {
@@ -151,13 +146,38 @@ fn noisy(values: &[f64], equal: &[(usize, usize)]) -> bool {
     share(repeats(false)) < NOISY && share(repeats(true)) < MOSTLY
 }
 
+/// How many of its moves a channel takes back with the next one, as a share.
+fn turns(values: &[f64]) -> f64 {
+    let moves = values.windows(2).map(|pair| pair[1] - pair[0]);
+    let moves: Vec<f64> = moves.filter(|step| step.is_finite() && *step != 0.0).collect();
+    let turns = moves.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count();
+    turns as f64 / moves.len().max(1) as f64
+}
+
 /// All but [`UNUSUAL`] of the steps of a channel are smaller.
 fn usual_step(values: &[f64]) -> f64 {
+    let steps = changes(values);
+    if steps.is_empty() { f64::INFINITY } else { quantile_of_sorted(&steps, 1.0 - UNUSUAL) }
+}
+
+/// By how much a channel changes where it does, the least first.
+fn changes(values: &[f64]) -> Vec<f64> {
     let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    let mut steps: Vec<f64> = steps.filter(|step| step.is_finite() && *step > 0.0).collect();
-    steps.sort_by(f64::total_cmp);
-    let place = headland_calibrate::statistics::quantile_of_sorted;
-    if steps.is_empty() { f64::INFINITY } else { place(&steps, 1.0 - UNUSUAL) }
+    sorted(&steps.filter(|step| step.is_finite() && *step > 0.0).collect::<Vec<_>>())
+}
+
+/// Whether the noise of a channel, which is renewed as rarely as it may be, is so much coarser than its resolution that no two
+/// values in a row are the same by chance.
+fn renews(values: &[f64]) -> bool {
+    /// Steps of noise are so many times the smallest step.
+    const COARSE: f64 = 5.0;
+    /// White noise takes back two moves of three; what else moves the channel takes back few.
+    const TAKEN_BACK: f64 = 0.4;
+    let steps = changes(values);
+    // The smallest but for a few: rounding makes steps of next to nothing.
+    !steps.is_empty()
+        && quantile_of_sorted(&steps, 0.5) > COARSE * quantile_of_sorted(&steps, 0.02)
+        && turns(values) > TAKEN_BACK
 }
 
 fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fault> {
@@ -171,7 +191,7 @@ fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fa
         let time_s = trace.time_s();
         let equal = still(values);
         let own_noise = noisy(values, &equal);
-        noisy_everywhere &= own_noise;
+        noisy_everywhere &= own_noise || renews(values);
         let enough = if own_noise { 0.0 } else { HELD * usual_length(&equal, values.len()) };
         let leap = LEAP * usual_step(values);
         let long: Vec<(usize, usize)> = equal

@@ -144,6 +144,8 @@ fn short(variables: &[Checked], index: usize) -> Vec<Factor> {
             all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
             if of.negative {
                 all.push(make(Shape::SignedPower(1.0), of.round_size(), 0.0));
+                // One side alone: a wheel that rubs in bends one way.
+                all.extend([Shape::Above, Shape::Below].map(|shape| make(shape, of.round_size(), 0.0)));
             }
             all.push(make(Shape::Power(2.0), of.round_size(), 0.0));
         }
@@ -276,6 +278,7 @@ mod tests {
         for wave in [1, 2] {
             let sine = Factor { variable: wave, shape: Shape::Wave, scale: 7.3, centre: 0.0 };
             terms.push(Term::of(sine));
+            terms.push(Term::of(Factor { shape: Shape::Pulse(0.3), centre: 1.7, ..sine }));
             terms.extend(
                 envelopes(&bench.variables, wave).into_iter().filter_map(|one| Term::product(one, sine)),
             );

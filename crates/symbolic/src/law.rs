@@ -3,7 +3,7 @@
 use crate::known_variables;
 use crate::polish::Polished;
 use crate::problem::Bench;
-use crate::shape::{Free, Shape};
+use crate::shape::Free;
 use crate::variable::Known;
 use nalgebra::DMatrix;
 
@@ -129,11 +129,12 @@ pub(crate) fn write(bench: &Bench, law: &Polished, covariance: &DMatrix<f64>, ru
                     covariance[(at, at)].max(0.0).sqrt() * inner_size
                 })
             };
-            let wave = factor.shape == Shape::Wave;
-            let reach = if wave { factor.scale.powi(2) / of.spread() } else { factor.scale };
+            let repeats = factor.shape.repeats();
+            let reach = if repeats { factor.scale.powi(2) / of.spread() } else { factor.scale };
             let scale_sd = sd_of(Free::Scale, reach);
-            let centre_sd = sd_of(Free::Centre, of.spread());
+            let centre_sd = sd_of(Free::Centre, if repeats { factor.scale } else { of.spread() });
             let power_sd = sd_of(Free::Power, 1.0);
+            let level_sd = sd_of(Free::Level, 1.0);
             inner += factor.shape.free().len();
             let known = of.known;
             let centre = if factor.shape.has_centre() {
@@ -152,9 +153,14 @@ pub(crate) fn write(bench: &Bench, law: &Polished, covariance: &DMatrix<f64>, ru
                 }
                 _ => String::new(),
             };
-            let power = match power_sd {
-                Some(sd) => writer.constant(&format!("power{}", index + 1), (factor.power(), sd), true, "1"),
-                None => String::new(),
+            let power = match (power_sd, level_sd) {
+                (Some(sd), _) => {
+                    writer.constant(&format!("power{}", index + 1), (factor.power(), sd), true, "1")
+                }
+                (_, Some(sd)) => {
+                    writer.constant(&format!("level{}", index + 1), (factor.level(), sd), true, "1")
+                }
+                _ => String::new(),
             };
             parts.push(factor.text(of, [&scale, &centre, &phase, &power]));
         }

@@ -9,6 +9,7 @@ use crate::dictionary::{dictionary, envelopes};
 use crate::polish::{Polished, amplitudes, polish};
 use crate::problem::Bench;
 use crate::screen::Screen;
+use crate::shape::{Factor, Shape};
 use crate::term::Term;
 use crate::vector::{dot, normalise, take_out};
 use rayon::prelude::*;
@@ -189,7 +190,11 @@ impl Hunt<'_> {
                 envelopes(&self.bench.variables, wave.variable).into_iter().filter_map(of).collect::<Vec<_>>()
             })
             .collect();
+        let pulses = peaks.iter().flat_map(|peak| pulses(&self.screen.terms[*peak].factors[0]));
         let judged: Vec<(f64, Term)> = modulated
+            .into_iter()
+            .chain(pulses)
+            .collect::<Vec<Term>>()
             .into_par_iter()
             .map(|term| (self.screen.gain_of(self.bench, &term, &basis, &left), term))
             .collect();
@@ -231,6 +236,18 @@ impl Hunt<'_> {
         }
         self.polished(starts)
     }
+}
+
+/// Pulses of the period of a wave: what goes on and off has a wave in it that is found first. They begin in all eighths of
+/// the first half; in the other half the same are off that are on here.
+fn pulses(wave: &Factor) -> impl Iterator<Item = Term> {
+    const BEGINS: u8 = 4;
+    const EIGHTH: f64 = 0.125;
+    let of = *wave;
+    (0..BEGINS).map(move |begin| {
+        let centre = f64::from(begin) * EIGHTH * of.scale;
+        Term::of(Factor { shape: Shape::Pulse(0.0), centre, ..of })
+    })
 }
 
 /// Columns made orthonormal again, after rows were taken out of them.

@@ -32,6 +32,9 @@ pub(crate) enum Shape {
     Bump,
     /// sin(2π u/s + φ)
     Wave,
+    /// On and off again and again: ½ (1 + tanh(k (sin(2π (u − c)/s) − l))), with the level l that the data move; on for
+    /// the share arccos(l)/π of the time
+    Pulse(f64),
     /// sin(n u + φ) of an angle
     Harmonic(u8),
     /// u of a gate
@@ -46,7 +49,11 @@ pub(crate) enum Free {
     Scale,
     Centre,
     Power,
+    Level,
 }
+
+/// How steeply a pulse goes on and off: within a hundredth of its period.
+const EDGE: f64 = 20.0;
 
 impl Shape {
     /// Which constants are free.
@@ -56,6 +63,7 @@ impl Shape {
             Self::FreePower(_) => &[Free::Power],
             Self::Above | Self::Below => &[Free::Centre],
             Self::Step | Self::Bump => &[Free::Centre, Free::Scale],
+            Self::Pulse(_) => &[Free::Centre, Free::Scale, Free::Level],
             _ => &[],
         }
     }
@@ -63,6 +71,11 @@ impl Shape {
     /// Whether it has a phase: then it is two columns, a sine and a cosine.
     pub fn has_phase(self) -> bool {
         matches!(self, Self::Wave | Self::Harmonic(_))
+    }
+
+    /// Whether it comes again and again.
+    pub fn repeats(self) -> bool {
+        matches!(self, Self::Wave | Self::Pulse(_))
     }
 
     /// Whether a scale stands in it.
@@ -123,6 +136,7 @@ impl Factor {
             Shape::Step => 0.5 * (1.0 + ((u - c) / s).tanh()),
             Shape::Bump => (-((u - c) / s).powi(2)).exp(),
             Shape::Wave => return (TAU * u / s).sin_cos(),
+            Shape::Pulse(level) => 0.5 * (1.0 + (EDGE * ((TAU * (u - c) / s).sin() - level)).tanh()),
             Shape::Harmonic(n) => return (f64::from(n) * u).sin_cos(),
             Shape::On => u,
             Shape::Off => 1.0 - u,
@@ -130,7 +144,7 @@ impl Factor {
         (value, 0.0)
     }
 
-    /// As text, with the names of its scale, centre, phase and power.
+    /// As text, with the names of its scale, centre, phase, and power or level.
     pub fn text(&self, of: &Checked, [scale, centre, phase, power]: [&str; 4]) -> String {
         let name = of.known.name;
         let u = if takes_size(self.shape, of) { format!("abs({name})") } else { name.to_owned() };
@@ -148,6 +162,9 @@ impl Factor {
             Shape::Step => format!("0.5 * (1 + tanh(({u} - {centre}) / {scale}))"),
             Shape::Bump => format!("exp(-(({u} - {centre}) / {scale})^2)"),
             Shape::Wave => format!("sin({TAU} * {u} / {scale} + {phase})"),
+            Shape::Pulse(_) => {
+                format!("0.5 * (1 + tanh({EDGE} * (sin({TAU} * ({u} - {centre}) / {scale}) - {power})))")
+            }
             Shape::Harmonic(1) => format!("sin({u} + {phase})"),
             Shape::Harmonic(n) => format!("sin({n} * {u} + {phase})"),
             Shape::On => u,
@@ -156,13 +173,15 @@ impl Factor {
     }
 
     /// A free constant on the scale on which it is moved: the logarithm of a scale, a centre as a share of the spread,
-    /// a wave as cycles over the spread.
+    /// a wave as cycles over the spread, and the begin of a pulse in cycles.
     pub fn inner(&self, free: Free, of: &Checked) -> f64 {
         match free {
-            Free::Scale if self.shape == Shape::Wave => of.spread() / self.scale,
+            Free::Scale if self.shape.repeats() => of.spread() / self.scale,
+            Free::Centre if self.shape.repeats() => self.centre / self.scale,
             Free::Scale => self.scale.ln(),
             Free::Centre => (self.centre - of.low) / of.spread(),
             Free::Power => self.power(),
+            Free::Level => self.level(),
         }
     }
 
@@ -178,8 +197,10 @@ impl Factor {
         const CENTRES: (f64, f64) = (-0.1, 1.1);
         /// Powers: below the first a constant, above the second a wall.
         const POWERS: (f64, f64) = (0.2, 6.0);
+        /// Levels: beyond it a pulse is on, or off, for less than a tenth of its period.
+        const MOST_LEVEL: f64 = 0.95;
         match free {
-            Free::Scale if self.shape == Shape::Wave => {
+            Free::Scale if self.shape.repeats() => {
                 self.scale = (of.spread() / inner.max(FEWEST_CYCLES)).max(of.finest);
             }
             Free::Scale => {
@@ -187,18 +208,21 @@ impl Factor {
                 let smallest = (SCALES.0 * of.spread()).max(FINER * of.finest);
                 self.scale = inner.exp().clamp(smallest, (SCALES.1 * largest).max(smallest));
             }
+            Free::Centre if self.shape.repeats() => self.centre = inner * self.scale,
             Free::Centre => self.centre = of.low + of.spread() * inner.clamp(CENTRES.0, CENTRES.1),
             Free::Power => self.shape = Shape::FreePower(inner.clamp(POWERS.0, POWERS.1)),
+            Free::Level => self.shape = Shape::Pulse(inner.clamp(-MOST_LEVEL, MOST_LEVEL)),
         }
     }
 
     /// How far a free constant may move in one step, on its inner scale.
     pub fn longest_step(&self, free: Free) -> f64 {
         match free {
-            Free::Scale if self.shape == Shape::Wave => 0.25,
+            Free::Scale if self.shape.repeats() => 0.25,
             Free::Scale => 0.7,
             Free::Centre => 0.15,
             Free::Power => 0.5,
+            Free::Level => 0.3,
         }
     }
 
@@ -209,8 +233,17 @@ impl Factor {
 
     /// What it is, without its constants: variable, shape, exponent.
     pub fn family(&self) -> (usize, String) {
-        let shape = if let Shape::FreePower(_) = self.shape { Shape::FreePower(1.0) } else { self.shape };
+        let shape = match self.shape {
+            Shape::FreePower(_) => Shape::FreePower(1.0),
+            Shape::Pulse(_) => Shape::Pulse(0.0),
+            other => other,
+        };
         (self.variable, format!("{shape:?}"))
+    }
+
+    /// The level that the data moved; 0 where there is none.
+    pub fn level(&self) -> f64 {
+        if let Shape::Pulse(level) = self.shape { level } else { 0.0 }
     }
 
     /// The power that the data moved; 1 where there is none.

@@ -71,6 +71,30 @@ fn a_wave_that_fades_is_found() {
     assert!(r2 > 0.95 && law.names("t") && law.names("sin"), "{r2} {}", law.text);
 }
 
+/// A wave has four fifths of it: what goes on and off is told as that, with its share.
+#[test]
+fn what_is_clocked_is_found_as_a_pulse_with_its_period_and_its_share() {
+    /// Of each period.
+    const ON: f64 = 0.35;
+    let (found, r2) = found(6, 100.0, |at| if (at.t / 7.3 + 0.2).rem_euclid(1.0) < ON { 500.0 } else { 0.0 });
+    let law = found.law().unwrap();
+    assert!(r2 > 0.95 && law.terms == 1, "{r2} {}", law.text);
+    let (amplitude, sd) = constant(&found, "a1_n");
+    close((amplitude.abs(), sd), 500.0);
+    close(constant(&found, "t2_s"), 7.3);
+    let above = constant(&found, "level1").0.acos() / std::f64::consts::PI;
+    // What is less while the wave is high is more while it is low.
+    let on = if amplitude > 0.0 { above } else { 1.0 - above };
+    assert!((on - ON).abs() < 0.02, "{on} {}", law.text);
+}
+
+#[test]
+fn what_one_side_of_a_bend_does_is_found() {
+    let (found, r2) = found(7, 100.0, |at| 400.0 * (at.kappa * at.v * at.v).max(0.0));
+    let law = found.law().unwrap();
+    assert!(r2 > 0.95 && law.names("v") && law.names("kappa") && law.terms == 1, "{r2} {}", law.text);
+}
+
 /// The second nuisance of the plant is a force along v²: 2 N s²/m² are half of its standard deviation.
 #[test]
 fn what_a_free_parameter_can_imitate_earns_nothing() {

@@ -279,7 +279,8 @@ fn loosely(cause: &Cause, term: usize, value: f64) -> (f64, (f64, f64), f64) {
         return (value.clamp(term.low, term.high), (term.low, term.high), sd);
     }
     // A shape is known about as well as its grid is spaced.
-    (value, (0.2 * value, 5.0 * value), 0.6 * value.abs())
+    let limits = ((0.2 * value).max(term.low), (5.0 * value).min(term.high));
+    (value.clamp(term.low, term.high), limits, 0.6 * value.abs())
 }
 
 /// A fit of causes.

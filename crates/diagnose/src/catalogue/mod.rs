@@ -61,10 +61,18 @@ const MOST_WIND_M_S: f64 = 20.0;
 
 const MOTION: &[Kind] = &[Kind::Motion, Kind::Battery, Kind::Fuel];
 
-/// A time constant; what takes many times as long as the longest run does not change within it.
+/// A time constant; what takes several times as long as the longest run does not change within it, and no oil or tyre warms
+/// up within seconds.
 fn fading(around: &Around) -> Term {
+    let (fastest_s, slowest_s) = fading_s(around);
+    shape("time_constant_s", "s").within(fastest_s, slowest_s)
+}
+
+/// The fastest and the slowest time constant that can be told.
+fn fading_s(around: &Around) -> (f64, f64) {
+    const FASTEST_S: f64 = 15.0;
     const MOST_RUNS: f64 = 3.0;
-    shape("time_constant_s", "s").within(0.0, MOST_RUNS * around.duration_s)
+    (FASTEST_S, FASTEST_S.max(MOST_RUNS * around.duration_s))
 }
 
 /// Begin and end of a spell that is the same in every run, in eighths of the longest.
@@ -210,8 +218,11 @@ fn shift_transient(around: &Around, weight_n: f64, count: usize) -> Cause {
 pub fn causes(around: &Around) -> Vec<Cause> {
     let weight = around.mass_kg * around.gravity_m_s2;
     let has = |name: &str| around.channels.iter().any(|channel| channel == name);
-    // From a tenth of the longest run to six of it, evenly in proportion.
-    let taus: Vec<Vec<f64>> = (0..7).map(|step| vec![0.1 * around.duration_s * 2f64.powi(step)]).collect();
+    // From a tenth of the longest run on, evenly in proportion.
+    let (fastest_s, slowest_s) = fading_s(around);
+    let first_s = fastest_s.max(0.1 * around.duration_s);
+    let taus = (0..7).map(|step| first_s * 2f64.powi(step)).filter(|tau| *tau <= slowest_s);
+    let taus: Vec<Vec<f64>> = taus.map(|tau| vec![tau]).collect();
     // An implement can pull as much as the ground can hold.
     let pull = positive("force_n", "N", 0.02 * weight).within(0.0, weight);
     let mut all = vec![

@@ -29,7 +29,13 @@ impl State<'_> {
                 if cause.id == own.id || law(part) || cause.is_banned(&banned) {
                     return None;
                 }
-                let needed = if is_plain(cause, &side.part, own) { -as_good } else { TOLERANCE };
+                let needed = if is_plain(cause, own) && side.part.spread.is_some() {
+                    -as_good
+                } else if is_plain(own, cause) && part.spread.is_some() {
+                    as_good
+                } else {
+                    TOLERANCE
+                };
                 Some(rank(stand, self) - best.score - needed).filter(|more| *more > 0.0)
             };
             let all = side.contests.iter().filter_map(|one| Some((of(&one.stand)?, &one.stand)));
@@ -42,9 +48,8 @@ impl State<'_> {
     }
 }
 
-/// Whether a cause is the plain value of what a part has as a function.
-fn is_plain(cause: &Cause, gone: &Part, own: &Cause) -> bool {
-    gone.spread.is_some()
-        && cause.form == Form::Parameters
-        && own.even().is_some_and(|(even, _)| even == cause.id && even != own.id)
+/// Whether a cause is the plain value of what another has as a function.
+fn is_plain(cause: &Cause, function: &Cause) -> bool {
+    cause.form == Form::Parameters
+        && function.even().is_some_and(|(even, _)| even == cause.id && even != function.id)
 }

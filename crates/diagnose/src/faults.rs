@@ -390,6 +390,7 @@ fn lost(drives: &[Recorded]) -> Option<Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use headland_calibrate::statistics::Draws;
 
     /// Noise about a slow wave, with thirty samples that are all the same.
     fn stuck_at(from: usize, noise: f64) -> Vec<f64> {
@@ -404,5 +405,18 @@ mod tests {
         assert!(!told(&stuck_at(100, 0.0)), "a smooth channel may stay where it is");
         let held: Vec<f64> = stuck_at(500, 0.01).iter().flat_map(|value| [*value; 20]).collect();
         assert!(!told(&held), "a channel that is renewed slowly is not stuck");
+    }
+
+    #[test]
+    fn where_noise_moves_a_channel_that_is_renewed_slowly_is_known_all_the_same() {
+        let held = |noise: f64| -> Vec<f64> {
+            let mut draws = Draws::new(7, 0);
+            let of = |index: usize| 1e4 * ((0.002 * index as f64).sin() + noise * draws.normal());
+            (0..400).map(of).flat_map(|value| [value.round(); 5]).collect()
+        };
+        assert!(renews(&held(0.01)));
+        assert!(!renews(&held(0.0)), "a smooth channel stays where it is when it has arrived");
+        let coarse: Vec<f64> = held(0.01).iter().map(|value| 1e4 * (value / 1e4).round()).collect();
+        assert!(!renews(&coarse), "a coarse channel stays where it is");
     }
 }

@@ -160,6 +160,32 @@ fn a_consumer_by_a_law_of_speed_is_found_in_the_fuel_and_in_watts() {
     assert!((told / truth - 1.0).abs() < 0.15, "{told} W, {truth} W: {}", said.answer);
 }
 
+/// An engine that was driven just before starts warm: two of four runs start cold, and only fuel tells of it.
+#[test]
+fn an_engine_that_starts_cold_in_some_runs_is_found_with_its_friction() {
+    const COLD: &str = "cold_start(cold_torque_n_m: 300.0, time_constant_s: 90.0)";
+    const TORQUE_N_M: f64 = 300.0;
+    let registry = headland_stock::registry();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "fuel_rate_kg_s" => value + 1e-4 * draws.normal(),
+        _ => value,
+    };
+    let channels = ["speed_m_s", "position_m", "heading_rad", "fuel_rate_kg_s", "engine_speed_rad_s"];
+    let of =
+        |effects: &str| recording_of_scenario(&with_an_engine(effects), &registry, &channels, (6, &noisy));
+    let (mut recording, warm) = (of(COLD), of(""));
+    // One each way: slopes would be as cold in one direction.
+    for run in [1, 2] {
+        recording.runs[run] = warm.runs[run].clone();
+    }
+    let found =
+        found_of_scenario(&with_an_engine(""), &recording, &Options::default(), &registry).unwrap().diagnosis;
+    assert_eq!(found.findings[0].id, "cold_start", "{}", found.answer);
+    let torque = &found.findings[0].parameters[0];
+    assert!((torque.value / TORQUE_N_M - 1.0).abs() < 0.2, "{torque:?}: {}", found.answer);
+}
+
 /// Where the true cause is not in the library, no other is claimed as if it were certain.
 #[test]
 fn without_the_true_cause_no_listed_one_is_claimed_in_silence() {

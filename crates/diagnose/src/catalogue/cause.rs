@@ -205,8 +205,9 @@ impl Cause {
     pub fn constant(&self, value: f64, shape: &[f64]) -> String {
         let Some((id, name)) = self.even() else { return String::new() };
         let held = self.terms.iter().filter(|term| !term.linear).zip(shape);
-        let held: String = held.map(|(term, value)| format!(", {}: {value:?}", term.name)).collect();
-        format!("{id}({name}: {value:?}{held})")
+        let held = held.map(|(term, value)| format!("{}: {value:?}", term.name));
+        let all: Vec<String> = std::iter::once(format!("{name}: {value:?}")).chain(held).collect();
+        format!("{id}({})", all.join(", "))
     }
 
     /// Whether a value of a term is what it cannot be.

@@ -353,3 +353,43 @@ fn experiment(cause: &Cause, cured: &Cured, case: &Case) -> String {
     runs.truncate(3);
     runs.join("; or ")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::RivalReport;
+
+    fn finding(kind: FindingKind, id: &str, rival: Option<&str>) -> FindingReport {
+        let rival =
+            rival.map(|id| RivalReport { id: id.to_owned(), squared_correlation: 1.0, evidence: 9.0 });
+        FindingReport {
+            kind,
+            id: id.to_owned(),
+            balance: Kind::Motion,
+            sentence: String::new(),
+            equation: String::new(),
+            depends_on: Vec::new(),
+            stretches: Vec::new(),
+            parameters: Vec::new(),
+            share_of_mismatch: 0.5,
+            evidence: [9.0, 7.0],
+            indistinguishable_from: rival.into_iter().collect(),
+            next_experiment: String::new(),
+        }
+    }
+
+    #[test]
+    fn one_cause_in_doubt_leaves_open_what_is_missing_and_takes_nothing_from_a_sensors_fault() {
+        use FindingKind::{Artefact, Physics};
+        let sure = || finding(Physics, "wind", None);
+        let doubtful = || finding(Physics, "grade", Some("soft_ground"));
+        let fault = || finding(Artefact, "accelerometer_bias", Some("accelerometer_tilt"));
+        assert_eq!(verdict(&[]), Verdict::None);
+        assert_eq!(verdict(&[sure()]), Verdict::MissingPhysics);
+        assert_eq!(verdict(&[sure(), doubtful()]), Verdict::CannotTell);
+        assert_eq!(verdict(&[fault()]), Verdict::SensorArtefact);
+        assert_eq!(verdict(&[fault(), doubtful()]), Verdict::Both);
+        assert_eq!(verdict(&[doubtful(), fault()]), Verdict::CannotTell);
+        assert_eq!(verdict(&[finding(FindingKind::Unlisted, "unlisted", None), sure()]), Verdict::Unlisted);
+    }
+}

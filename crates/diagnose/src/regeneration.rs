@@ -11,8 +11,10 @@ use headland_calibrate::statistics::{NORMAL_OF_MEDIAN, median, quantile_of_sorte
 const FEWEST: usize = 30;
 /// While somebody brakes, power stays within this share of the limit …
 const SAME: f64 = 0.1;
-/// … for this share of the time: drives give back less at walking pace.
+/// … for this share of the time,
 const MOSTLY: f64 = 0.7;
+/// beyond walking pace, at which drives give back less [m/s].
+const WALKING_M_S: f64 = 3.0;
 /// At any other time hardly a sample exceeds it by more.
 const HARDLY: f64 = 0.995;
 /// A drive that gives back less than this share of what it drives with gives back nothing.
@@ -34,6 +36,9 @@ pub fn limit_w(case: &Case, events: &[Event]) -> Option<(f64, f64)> {
                 continue;
             }
             greatest_w = greatest_w.max(-back_w);
+            if *speed < WALKING_M_S {
+                continue;
+            }
             if own.iter().any(|event| (event.from_s..=event.to_s).contains(time_s)) {
                 within.push(back_w);
             } else {

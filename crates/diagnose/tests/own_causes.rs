@@ -149,6 +149,18 @@ fn a_formula_of_the_author_is_tried_by_its_amount() {
 }
 
 #[test]
+fn a_formula_of_what_the_drive_loses_is_tried_by_its_amount() {
+    let law = |share: f64| {
+        format!(
+            "expression(loss_share: \"n * v / v0_m_s\", constants: {{\"n\": {share:?}, \"v0_m_s\": 5.0}})"
+        )
+    };
+    let more = format!("candidates: [{}],", law(0.12));
+    let found = found_with(&recorded(0.069, &law(0.15)), &Options::default(), &more, &registry()).unwrap();
+    comes_first(&found, "expression", 1.25, "expression");
+}
+
+#[test]
 fn a_candidate_that_is_not_in_proportion_to_its_first_number_is_refused() {
     let more = "candidates: [wind(speed_m_s: 5, from_rad: 0.4), stretch(from_m: 40, force_n: 1000)],";
     let error = found_with(&recorded(0.07, ""), &Options::default(), more, &registry()).err().unwrap();

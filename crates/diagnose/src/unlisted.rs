@@ -85,7 +85,7 @@ fn candidates(
         if start.is_empty() && rows <= MANY_ROWS {
             candidates.extend(with_less(case, system, pool, &law, sought));
         }
-        if is_map(&law) || is_undetermined(&law) {
+        if is_map(&law, sought.target) || is_undetermined(&law) {
             continue;
         }
         let mut part = add(case, system, pool, &law, sought);
@@ -95,7 +95,7 @@ fn candidates(
         if let Some(settled) = state.settle(&with(&part), &found.stand.noises)
             && (rows <= MANY_ROWS || worth(&settled) > worth(&found.stand))
             && let Some(better) = formula::law(case, system, pool, &start, &settled.noises, sought)?
-            && !is_map(&better)
+            && !is_map(&better, sought.target)
             && !is_undetermined(&better)
         {
             law = better;
@@ -164,7 +164,7 @@ fn beside(
         if !listed.is_empty()
             && rows <= MANY_ROWS
             && let Some(law) = law(case, system, pool, &listed, &stand.noises, sought)?
-            && !is_map(&law)
+            && !is_map(&law, sought.target)
             && !is_undetermined(&law)
             && law.terms <= terms
         {
@@ -190,14 +190,16 @@ fn beside(
     Ok(found)
 }
 
-/// Whether a law draws a map: softer ground and slopes are that by their definition, beside something else or in several
-/// shapes of one. A wave that goes on along the whole path is none.
-fn is_map(law: &Law) -> bool {
+/// Whether a law draws a map: softer ground and slopes are that by their definition, and so is a consumer that is switched
+/// with time, beside something else or in several shapes of one. A wave that goes on all the way is none.
+fn is_map(law: &Law, target: Target) -> bool {
     const WAVE: &str = "sin";
-    let only_x = |term: &[&str]| !term.is_empty() && term.iter().all(|name| *name == "x");
+    let drawn: &[&str] = if target == Target::Power { &["x", "t"] } else { &["x"] };
+    let only =
+        |term: &[&str]| drawn.iter().any(|name| !term.is_empty() && term.iter().all(|own| own == name));
     let terms = law.variables_of_terms();
     let alone = terms.len() == 1 && law.names(WAVE);
-    !alone && terms.iter().any(|term| only_x(term))
+    !alone && terms.iter().any(|term| only(term))
 }
 
 /// Whether a term of a law may as well be none: several that take each other back say nothing of any.
@@ -324,9 +326,9 @@ fn with_less(
     let terms: Vec<Part> = law
         .each
         .iter()
-        .map(|term| if is_map(term) { None } else { Some(add(case, system, pool, term, sought)) })
-        .collect::<Option<_>>()
-        .unwrap_or_default();
+        .filter(|term| !is_map(term, sought.target))
+        .map(|term| add(case, system, pool, term, sought))
+        .collect();
     let mut all: Vec<Vec<Part>> = terms.iter().map(|term| vec![term.clone()]).collect();
     if terms.len() > 2 {
         all.extend((0..terms.len()).map(|gone| {

@@ -8,7 +8,7 @@ use crate::faults::Fault;
 use crate::mirror::is_whole;
 use crate::prove::{Proof, prove, told_by};
 use crate::refine::{Cured, Refined, refine, spells};
-use crate::search::Found;
+use crate::search::{Found, Rival};
 use crate::state::{Part, State};
 use crate::trial::Pool;
 use crate::{Case, DiagnoseError, System};
@@ -145,7 +145,10 @@ fn without_nothing(
             let columns = &cured.accepted.trial.columns;
             let parts = &own.found.stand.parts;
             let place = parts.iter().position(|part| part.trial.columns == *columns);
-            let Some(place) = place.filter(|_| parts.len() > 1) else { continue };
+            // An equation in the place of the only cause says that there is something, whatever it is.
+            let law = |rival: &Rival| case.causes[rival.cause].law.is_some();
+            let able_alone = parts.len() > 1 || !cured.accepted.rivals.iter().any(law);
+            let Some(place) = place.filter(|_| able_alone) else { continue };
             let state = State { case, system, pool, fit: &case.fit };
             let unproven = own.found.unproven.clone();
             let Some(found) = lesser_set(&state, &own.found, place, unproven) else { continue };

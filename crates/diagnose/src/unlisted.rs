@@ -10,7 +10,7 @@ use crate::look::MANY_ROWS;
 use crate::losses::SPEED_SQUARED;
 use crate::search::{Found, MOST_CAUSES, OTHER_WORDS, TOLERANCE, concluded, worth};
 use crate::state::{Part, Stand, State};
-use crate::trial::{Pool, Trial};
+use crate::trial::{Pool, Trial, add_trial};
 use crate::{Case, DiagnoseError, System};
 use headland_symbolic::{Law, Target};
 
@@ -103,6 +103,9 @@ fn candidates(
         }
         candidates.push(with(&part));
         candidates.push(vec![part]);
+        for part in windows(case, system, pool, &law)? {
+            candidates.push(start.iter().cloned().chain([part]).collect());
+        }
     }
     if sought.kind == Kind::Battery
         && let Some(part) = outgrown(case, pool, found)
@@ -340,6 +343,36 @@ fn with_less(
     all
 }
 
+/// The listed causes that begin and end, at the times at which a law does: a formula finds edges that no grid has.
+fn windows(case: &Case, system: &System, pool: &mut Pool, law: &Law) -> Result<Vec<Part>, DiagnoseError> {
+    let Some(window) = window_s(law) else { return Ok(Vec::new()) };
+    let before = pool.trials.len();
+    for (number, cause) in case.causes.iter().enumerate() {
+        if cause.window().is_some() && cause.own.is_none() && cause.possible(&window) {
+            add_trial(case, system, pool, number, &window)?;
+        }
+    }
+    Ok(pool.trials[before..].iter().map(|trial| Part { trial: trial.clone(), spread: None }).collect())
+}
+
+/// When a law sets in and ends [s]: at two steps, or about the middle of one bump.
+fn window_s(law: &Law) -> Option<[f64; 2]> {
+    let has = |text: String| law.text.contains(&text);
+    let middles: Vec<usize> =
+        (0..law.constants.len()).filter(|at| has(format!("(t - {})", law.constants[*at].name))).collect();
+    let value = |at: usize| law.constants.get(at).map(|constant| constant.value);
+    match middles[..] {
+        _ if law.names("sin") => None,
+        [one, other] => Some([value(one)?.min(value(other)?), value(one)?.max(value(other)?)]),
+        [middle] => {
+            let (about_s, width) = (value(middle)?, law.constants.get(middle + 1)?);
+            let bump = has(format!("((t - {}) / {})^2", law.constants[middle].name, width.name));
+            bump.then_some([about_s - width.value, about_s + width.value])
+        }
+        _ => None,
+    }
+}
+
 /// The regressor of a law.
 fn add(case: &mut Case, system: &System, pool: &mut Pool, law: &Law, sought: &Sought) -> Part {
     let Sought { kind, target, .. } = *sought;
@@ -441,5 +474,58 @@ impl Cause {
             by_run: false,
             run: None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn law(text: &str, constants: &[(&str, f64)]) -> Law {
+        let constant = |(name, value): &(&str, f64)| headland_symbolic::Constant {
+            name: (*name).to_owned(),
+            value: *value,
+            sd: None,
+            unit: "s".to_owned(),
+        };
+        Law {
+            text: text.to_owned(),
+            constants: constants.iter().map(constant).collect(),
+            terms: 1,
+            complexity: 4,
+            gain: 0.0,
+            error: 0.0,
+            error_beyond_best: 0.0,
+            error_beyond_best_sd: 0.0,
+            explained: 0.0,
+            unseen: None,
+            prediction: Vec::new(),
+            each: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_law_sets_in_and_ends_at_its_steps_or_beside_its_bump() {
+        let steps = law(
+            "a1_n * 0.5 * (1 + tanh((t - t1_s) / t2_s)) + a2_n * 0.5 * (1 + tanh((t - t3_s) / t4_s))",
+            &[("a1_n", 5.0), ("t1_s", 29.0), ("t2_s", 0.6), ("a2_n", -5.0), ("t3_s", 13.0), ("t4_s", 0.6)],
+        );
+        assert_eq!(window_s(&steps), Some([13.0, 29.0]));
+        let bump = "a1_n * exp(-((t - t1_s) / t2_s)^2)";
+        assert_eq!(window_s(&law(bump, &[("a1_n", 5.0), ("t1_s", 20.0), ("t2_s", 4.0)])), Some([16.0, 24.0]));
+        let pulse = "a1_n * 0.5 * (1 + tanh(20 * (sin(6.28 * (t - t1_s) / t2_s) - level1)))";
+        assert_eq!(window_s(&law(pulse, &[("a1_n", 5.0), ("t1_s", 2.0), ("t2_s", 8.0)])), None);
+        assert_eq!(window_s(&law("a1_n * exp(-t / t1_s)", &[("a1_n", 5.0), ("t1_s", 20.0)])), None);
+    }
+
+    #[test]
+    fn a_patch_is_a_map_and_what_goes_on_all_the_way_is_none() {
+        let told = |text: &str, target: Target| is_map(&law(text, &[]), target);
+        assert!(told("a1_n * exp(-((x - x1_m) / x2_m)^2)", Target::Force));
+        assert!(!told("a1_n * sin(6.28 * x / x1_m + phase1_rad)", Target::Force));
+        assert!(told("a1_n * (v / v1_m_s) + a2_n * exp(-((x - x1_m) / x2_m)^2)", Target::Force));
+        assert!(!told("a1_n * exp(-((t - t1_s) / t2_s)^2)", Target::Force));
+        assert!(told("a1_w * exp(-((t - t1_s) / t2_s)^2)", Target::Power));
+        assert!(!told("a1_w * (v / v1_m_s)^3", Target::Power));
     }
 }

@@ -140,8 +140,10 @@ impl State<'_> {
             let cause = self.cause(trial);
             cause.is_function() && cause.id == SWITCHED && !out(cause) && self.apart(trial, &stand.parts)
         });
-        let of_battery = self.system.kinds.iter().position(|kind| *kind == Kind::Battery);
-        let Some(step) = of_battery.map(|number| BLOCKS * self.system.blocks_s[number]) else {
+        // A battery shows what is switched better than fuel, in which an engine's power is much of the noise.
+        let place = |wanted: Kind| self.system.kinds.iter().position(|kind| *kind == wanted);
+        let shown = place(Kind::Battery).or_else(|| place(Kind::Fuel));
+        let Some(step) = shown.map(|number| BLOCKS * self.system.blocks_s[number]) else {
             return Vec::new();
         };
         let part = |trial: &Trial| {

@@ -189,7 +189,10 @@ fn shift_transient(around: &Around, weight_n: f64, count: usize) -> Cause {
     const WIDTHS: [&[f64]; 2] = [&[0.03, 0.08], &[0.06]];
     /// Bells are narrow, so they are looked for all over the range, at so many speeds.
     const PLACES: [u8; 2] = [16, 8];
-    let mut terms = vec![positive("force_n", "N", 0.03 * weight_n), shape("width_m_s", "m/s")];
+    /// And no wider than this share of the greatest speed: what is, is no change of range but a law of speed.
+    const WIDEST: f64 = 0.1;
+    let width = shape("width_m_s", "m/s").within(0.0, WIDEST * around.range_m_s.1);
+    let mut terms = vec![positive("force_n", "N", 0.03 * weight_n), width];
     terms.extend(std::iter::repeat_n(shape("speed_m_s", "m/s"), count));
     let alone = usize::from(count > 1);
     let (from, to) = around.range_m_s;

@@ -10,7 +10,7 @@ use crate::Case;
 use crate::events::{BRAKED_M_S2, Event};
 use crate::recorded::{Recorded, SLOWEST_M_S};
 use crate::said::Said;
-use headland_calibrate::statistics::{NORMAL_OF_MEDIAN, quantile_of_sorted, sorted};
+use headland_calibrate::statistics::{NORMAL_OF_MEDIAN, median, quantile_of_sorted, sorted};
 use headland_units::constants::STANDARD_GRAVITY_M_S2;
 
 /// What is averaged before it is judged [s]: a pedal is not pressed for less.
@@ -100,9 +100,9 @@ fn averaged(time_s: &[f64], values: &[f64]) -> Vec<f64> {
     const LOPSIDED: usize = 2;
     /// Samples that are rare and come a little early or late still have one on each side.
     const STEPS: f64 = 3.0;
-    let steps = sorted(&time_s.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<_>>());
-    let usual_s = if steps.is_empty() { 0.0 } else { quantile_of_sorted(&steps, 0.5) };
-    let window_s = WINDOW_S.max(STEPS * usual_s);
+    let steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    // One sample makes no step, and the median of none is no number: the other is the greatest then.
+    let window_s = WINDOW_S.max(STEPS * median(&steps));
     let (mut from, mut to) = (0, 0);
     (0..values.len())
         .map(|index| {

@@ -102,8 +102,8 @@ fn best(
     (cause, start): (usize, &[f64]),
 ) -> Result<Vec<f64>, DiagnoseError> {
     let (columns, trials) = (pool.columns.len(), pool.trials.len());
-    let accepted = found.accepted.iter().find(|one| how != How::ByItself && one.trial.cause == cause);
     let own = found.accepted.iter().find(|one| one.trial.cause == cause);
+    let accepted = own.filter(|_| how != How::ByItself);
     let spread = own.and_then(|one| one.function.as_ref()).map(|function| function.spread.clone());
     let wanted = accepted.filter(|_| how == How::Beside).map(|one| one.trial.terms.clone());
     // Beside the other accepted causes, but for functions.

@@ -3,7 +3,7 @@
 //! find it.
 
 use crate::balance::Kind;
-use crate::catalogue::{Cause, Class, Form, LawText};
+use crate::catalogue::{Cause, Form, LawText};
 use crate::formula::{self, Sought, law};
 use crate::gram::Column;
 use crate::look::MANY_ROWS;
@@ -436,47 +436,6 @@ fn outgrown(case: &mut Case, pool: &mut Pool, found: &Found) -> Option<Part> {
     Some(put(case, pool, Cause::of_law(text, Kind::Battery), column))
 }
 
-impl Cause {
-    /// A consumer that is always on, whether or not any is among the causes that are tried.
-    pub fn consumer() -> Self {
-        let text = LawText {
-            role: "auxiliary_power",
-            text: "power_w".to_owned(),
-            constants_text: "{\"power_w\": 1.0}".to_owned(),
-            constants: Vec::new(),
-            depends_on: Vec::new(),
-            terms: 1,
-            cost: 0.0,
-        };
-        Self::of_law(text, Kind::Fuel)
-    }
-
-    /// A cause that is a law.
-    fn of_law(law: LawText, kind: Kind) -> Self {
-        let balances: &'static [Kind] = match kind {
-            Kind::Motion => &[Kind::Motion],
-            Kind::Fuel => &[Kind::Fuel],
-            _ => &[Kind::Battery],
-        };
-        Self {
-            id: "unlisted",
-            class: Class::Unlisted,
-            balances,
-            form: Form::Law,
-            terms: vec![crate::catalogue::Term::amplitude()],
-            shapes: vec![Vec::new()],
-            equation: "",
-            depends_on: &[],
-            words: "a cause that nobody listed",
-            experiment: "repeat the runs at other speeds, places and times than these, and see whether the equation holds",
-            law: Some(law),
-            own: None,
-            by_run: false,
-            run: None,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -488,20 +447,8 @@ mod tests {
             sd: None,
             unit: "s".to_owned(),
         };
-        Law {
-            text: text.to_owned(),
-            constants: constants.iter().map(constant).collect(),
-            terms: 1,
-            complexity: 4,
-            gain: 0.0,
-            error: 0.0,
-            error_beyond_best: 0.0,
-            error_beyond_best_sd: 0.0,
-            explained: 0.0,
-            unseen: None,
-            prediction: Vec::new(),
-            each: Vec::new(),
-        }
+        let constants = constants.iter().map(constant).collect();
+        Law { text: text.to_owned(), constants, terms: 1, ..Law::default() }
     }
 
     #[test]

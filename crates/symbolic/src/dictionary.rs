@@ -233,20 +233,8 @@ mod tests {
     }
 
     fn told(law: crate::law::Written) -> Law {
-        Law {
-            text: law.text,
-            constants: law.constants,
-            terms: 1,
-            complexity: 1,
-            gain: 0.0,
-            error: 0.0,
-            error_beyond_best: 0.0,
-            error_beyond_best_sd: 0.0,
-            explained: 0.0,
-            unseen: None,
-            prediction: law.prediction,
-            each: Vec::new(),
-        }
+        let crate::law::Written { text, constants, prediction } = law;
+        Law { text, constants, prediction, terms: 1, ..Law::default() }
     }
 
     /// The effect checks every unit of its formula, so what it reads has units that fit.

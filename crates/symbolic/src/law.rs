@@ -29,7 +29,7 @@ impl Constant {
 }
 
 /// A law and how it fared.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Law {
     /// The formula, in the unit of its target.
     pub text: String,

@@ -1,5 +1,7 @@
 //! An equation that was found, as a scenario writes it.
 
+use super::{Cause, Class, Form, Term};
+use crate::balance::Kind;
 use headland_symbolic::Target;
 
 /// Channels that the variables of a formula are read from.
@@ -57,6 +59,47 @@ impl LawText {
                 .collect(),
             terms: law.terms,
             cost: PER_PIECE * law.complexity as f64,
+        }
+    }
+}
+
+impl Cause {
+    /// A consumer that is always on, whether or not any is among the causes that are tried.
+    pub fn consumer() -> Self {
+        let text = LawText {
+            role: "auxiliary_power",
+            text: "power_w".to_owned(),
+            constants_text: "{\"power_w\": 1.0}".to_owned(),
+            constants: Vec::new(),
+            depends_on: Vec::new(),
+            terms: 1,
+            cost: 0.0,
+        };
+        Self::of_law(text, Kind::Fuel)
+    }
+
+    /// A cause that is a law.
+    pub fn of_law(law: LawText, kind: Kind) -> Self {
+        let balances: &'static [Kind] = match kind {
+            Kind::Motion => &[Kind::Motion],
+            Kind::Fuel => &[Kind::Fuel],
+            _ => &[Kind::Battery],
+        };
+        Self {
+            id: "unlisted",
+            class: Class::Unlisted,
+            balances,
+            form: Form::Law,
+            terms: vec![Term::amplitude()],
+            shapes: vec![Vec::new()],
+            equation: "",
+            depends_on: &[],
+            words: "a cause that nobody listed",
+            experiment: "repeat the runs at other speeds, places and times than these, and see whether the equation holds",
+            law: Some(law),
+            own: None,
+            by_run: false,
+            run: None,
         }
     }
 }

@@ -142,7 +142,7 @@ impl State<'_> {
         });
         // A battery shows what is switched better than fuel, in which an engine's power is much of the noise.
         let place = |wanted: Kind| self.system.kinds.iter().position(|kind| *kind == wanted);
-        let shown = place(Kind::Battery).or_else(|| place(Kind::Fuel));
+        let shown = place(Kind::Battery).or_else(|| place(Kind::Shaft)).or_else(|| place(Kind::Fuel));
         let Some(step) = shown.map(|number| BLOCKS * self.system.blocks_s[number]) else {
             return Vec::new();
         };

@@ -18,8 +18,8 @@ pub struct Sought {
     pub kind: Kind,
     /// What the formula is.
     pub target: Target,
-    /// What one newton or one watt makes of the balance's rows.
-    per_unit: f64,
+    /// What one newton or one watt makes of the rows of each balance that it shows in.
+    per_unit: Vec<(Kind, f64)>,
     /// Of what a share is lost, sample by sample [N], where a share is sought.
     whole: Option<Vec<Vec<f64>>>,
 }
@@ -36,14 +36,26 @@ impl Sought {
             return Ok(None);
         }
         let whole = if target == Target::Share { Some(lost_drive_n(case)?) } else { None };
-        let per_unit = if kind == Kind::Fuel { fuel_per_watt(case, system)? } else { 1.0 };
+        // What takes power at the shaft takes fuel for it.
+        let shows: &[Kind] = match kind {
+            Kind::Shaft => &[Kind::Shaft, Kind::Fuel],
+            Kind::Fuel => &[Kind::Fuel],
+            _ => &[],
+        };
+        let shows = shows.iter().filter(|kind| system.has(**kind));
+        let mut per_unit =
+            shows.map(|kind| Ok((*kind, per_watt(case, system, *kind)?))).collect::<Result<Vec<_>, DiagnoseError>>()?;
+        if per_unit.is_empty() {
+            per_unit.push((kind, 1.0));
+        }
         Ok(Some(Self { kind, target, per_unit, whole }))
     }
 
-    /// What the balance's rows are made of, of what a formula says of a run.
-    pub fn samples(&self, run: usize, said: &[f64]) -> Vec<f64> {
+    /// What a balance's rows are made of, of what a formula says of a run; nothing where it does not show there.
+    pub fn samples(&self, kind: Kind, run: usize, said: &[f64]) -> Vec<f64> {
+        let Some((_, per_unit)) = self.per_unit.iter().find(|(own, _)| *own == kind) else { return Vec::new() };
         let whole = |index: usize| self.whole.as_ref().map_or(1.0, |whole| whole[run][index]);
-        said.iter().enumerate().map(|(index, value)| self.per_unit * whole(index) * value).collect()
+        said.iter().enumerate().map(|(index, value)| per_unit * whole(index) * value).collect()
     }
 
     /// What may stand in the formula. What is lost on the way of a force is no matter of places or times.
@@ -57,15 +69,15 @@ impl Sought {
     }
 }
 
-/// Power in the fuel that a consumer of one watt takes, on average.
-fn fuel_per_watt(case: &Case, system: &System) -> Result<f64, DiagnoseError> {
+/// Power at the shaft or in the fuel that a consumer of one watt takes, on average.
+fn per_watt(case: &Case, system: &System, kind: Kind) -> Result<f64, DiagnoseError> {
     /// A consumer of a usual size [W].
     const USUAL_W: f64 = 1000.0;
     let consumer = Cause::consumer();
     let column = effect(case, system, &consumer, USUAL_W, &|_| consumer.written(&[USUAL_W]))?;
     let (mut sum, mut count) = (0.0, 0.0);
     for (chunk, rows) in system.chunks.iter().zip(&column) {
-        if system.kind(chunk) == Kind::Fuel && case.fit[chunk.run] {
+        if system.kind(chunk) == kind && case.fit[chunk.run] {
             sum += rows.sum();
             count += rows.len() as f64;
         }
@@ -93,7 +105,7 @@ impl Whitening<'_> {
 
 impl Rows for Whitening<'_> {
     fn rows(&self, run: usize, samples: &[f64]) -> Vec<f64> {
-        let samples = self.sought.samples(run, samples);
+        let samples = self.sought.samples(self.sought.kind, run, samples);
         self.of(run, |index| {
             let rows = &self.system.chunks[index].rows;
             nalgebra::DVector::from_iterator(rows.len(), rows.iter().map(|row| row.mean(&samples)))

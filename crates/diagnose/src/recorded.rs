@@ -208,10 +208,13 @@ pub fn force(trace: &Trace, model: &Model, speed: &[f64]) -> Option<Vec<f64>> {
     force
 }
 
-/// Power at the crankshaft [W], where torque and speed of the engine were recorded, no force is made of the torque, and no
-/// fuel tells of the same power better than the torque that a controller reckons.
+/// Power at the crankshaft [W], where torque and speed of the engine were recorded and no force is made of the torque.
+///
+/// Beside fuel only where a force at the wheels was measured: else what is unknown of the motion is most of what both leave,
+/// and it would count twice.
 fn engine(trace: &Trace, model: &Model) -> Option<Vec<f64>> {
-    if trace.get("fuel_rate_kg_s").is_some() {
+    let has = |name: &str| trace.get(name).is_some();
+    if has("fuel_rate_kg_s") && !has("tractive_force_n") {
         return None;
     }
     let (torque, speed) = (trace.get("engine_torque_n_m")?, trace.get("engine_speed_rad_s")?);

@@ -168,10 +168,12 @@ fn inputs(trace: &Trace, how: &Replay) -> Vec<Inputs> {
     let mut also = how.also.clone();
     let circumstances =
         [Inputs::Coasting, Inputs::Curvature, Inputs::AirTemperature, Inputs::Heading, Inputs::EngineSpeed];
-    // Where its torque is known as well, the power of the engine is, and its speed is the model's own.
-    let turns = |input: Inputs| input == Inputs::EngineSpeed && trace.get("engine_torque_n_m").is_some();
+    // Where a torque but no force is known the engine's speed is the model's own: a power that is made of the motion is uneven,
+    // and at a speed that is given the full load would cut off its peaks.
+    let has = |name: &str| trace.get(name).is_some();
+    let uneven = has("engine_torque_n_m") && !has("tractive_force_n");
     for input in circumstances {
-        if !also.contains(&input) && input.whole(trace) && !turns(input) {
+        if !also.contains(&input) && input.whole(trace) && !(input == Inputs::EngineSpeed && uneven) {
             also.push(input);
         }
     }

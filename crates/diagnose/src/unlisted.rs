@@ -40,17 +40,21 @@ pub fn unlisted(
     let sought = [
         (Kind::Motion, Target::Force),
         (Kind::Motion, Target::Share),
+        (Kind::Shaft, Target::Power),
         (Kind::Battery, Target::Power),
         (Kind::Fuel, Target::Power),
     ];
     for (kind, target) in sought {
+        // What a formula says of the shaft it says of the fuel.
         // A consumer that is switched with time may take any course: where that is long, no law says more.
         let any = found.stand.parts.iter().any(|part| {
             let cause = &case.causes[part.trial.cause];
             kind != Kind::Motion && cause.form == Form::OverTime && cause.balances.contains(&kind)
         });
         let any = any && system.row_count_of(kind) > MANY_ROWS;
+        let said_already = kind == Kind::Fuel && system.has(Kind::Shaft);
         if system.has(kind)
+            && !said_already
             && !any
             && let Some(sought) = Sought::new(case, system, kind, target)?
         {
@@ -376,10 +380,9 @@ fn window_s(law: &Law) -> Option<[f64; 2]> {
 /// The regressor of a law.
 fn add(case: &mut Case, system: &System, pool: &mut Pool, law: &Law, sought: &Sought) -> Part {
     let Sought { kind, target, .. } = *sought;
-    let silent = || vec![Vec::new(); case.runs.len()];
-    let samples = |(run, said): (usize, &Vec<f64>)| sought.samples(run, said);
-    let prediction: Vec<Vec<f64>> = law.prediction.iter().enumerate().map(samples).collect();
-    let column = system.column(|own| if own == kind { prediction.clone() } else { silent() });
+    let column = system.column(|own| {
+        law.prediction.iter().enumerate().map(|(run, said)| sought.samples(own, run, said)).collect()
+    });
     put(case, pool, Cause::of_law(LawText::new(law, target), kind), column)
 }
 

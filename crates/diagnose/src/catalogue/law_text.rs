@@ -82,7 +82,7 @@ impl Cause {
     pub fn of_law(law: LawText, kind: Kind) -> Self {
         let balances: &'static [Kind] = match kind {
             Kind::Motion => &[Kind::Motion],
-            Kind::Fuel => &[Kind::Fuel],
+            Kind::Shaft | Kind::Fuel => &[Kind::Fuel],
             _ => &[Kind::Battery],
         };
         Self {

@@ -89,10 +89,10 @@ fn quiet(case: &mut Case, look: &Look) -> Result<Vec<Event>, DiagnoseError> {
     Ok(if score < law + LEAST { Vec::new() } else { events })
 }
 
-/// How likely the recordings are with a law that nobody listed, where there is one.
+/// How likely the recordings are with a law of forces that nobody listed, where there is one: spells say nothing of consumers.
 fn worth_with_a_law(case: &mut Case, look: &Look) -> Result<f64, DiagnoseError> {
     let (causes, mut pool) = (case.causes.len(), look.pool.clone());
-    let found: Found = unlisted::unlisted(case, &look.system, &mut pool, look.found.clone())?;
+    let found: Found = unlisted::of_motion(case, &look.system, &mut pool, look.found.clone())?;
     case.causes.truncate(causes);
     Ok(worth(&found.stand))
 }

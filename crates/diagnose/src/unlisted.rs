@@ -33,18 +33,36 @@ pub fn unlisted(
     pool: &mut Pool,
     found: Found,
 ) -> Result<Found, DiagnoseError> {
+    /// Where power is drawn.
+    const POWERS: [(Kind, Target); 3] =
+        [(Kind::Shaft, Target::Power), (Kind::Battery, Target::Power), (Kind::Fuel, Target::Power)];
+    let found = of_motion(case, system, pool, found)?;
+    among(case, system, pool, found, &POWERS)
+}
+
+/// The same for what acts on the motion alone.
+pub fn of_motion(
+    case: &mut Case,
+    system: &System,
+    pool: &mut Pool,
+    found: Found,
+) -> Result<Found, DiagnoseError> {
+    const FORCES: [(Kind, Target); 2] = [(Kind::Motion, Target::Force), (Kind::Motion, Target::Share)];
+    among(case, system, pool, found, &FORCES)
+}
+
+fn among(
+    case: &mut Case,
+    system: &System,
+    pool: &mut Pool,
+    found: Found,
+    sought: &[(Kind, Target)],
+) -> Result<Found, DiagnoseError> {
     if !case.wanted("unlisted") {
         return Ok(found);
     }
     let mut found = found;
-    let sought = [
-        (Kind::Motion, Target::Force),
-        (Kind::Motion, Target::Share),
-        (Kind::Shaft, Target::Power),
-        (Kind::Battery, Target::Power),
-        (Kind::Fuel, Target::Power),
-    ];
-    for (kind, target) in sought {
+    for (kind, target) in sought.iter().copied() {
         // What a formula says of the shaft it says of the fuel.
         // A consumer that is switched with time may take any course: where that is long, no law says more.
         let any = found.stand.parts.iter().any(|part| {

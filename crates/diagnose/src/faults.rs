@@ -184,7 +184,7 @@ fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fa
     let mut stretches = Vec::new();
     let mut runs = 0;
     let mut seconds = 0.0;
-    let mut noisy_everywhere = true;
+    let (mut noisy_everywhere, mut leaps_everywhere) = (true, true);
     for (run, drive) in drives.iter().enumerate() {
         let trace: &Trace = &drive.measured.trace;
         let Some(values) = own(drive, name) else { continue };
@@ -194,13 +194,13 @@ fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fa
         noisy_everywhere &= own_noise || renews(values);
         let enough = if own_noise { 0.0 } else { HELD * usual_length(&equal, values.len()) };
         let leap = LEAP * usual_step(values);
+        let leaps = |to: usize| values.get(to + 1).is_some_and(|next| (next - values[to]).abs() > leap);
         let long: Vec<(usize, usize)> = equal
             .iter()
             .copied()
             .filter(|(from, to)| {
                 let moving = (*from..=*to).all(|index| drive.motion.value[index] > SLOWEST_M_S);
-                let leaps = values.get(to + 1).is_some_and(|next| (next - values[*to]).abs() > leap);
-                let (samples, long_s) = if leaps {
+                let (samples, long_s) = if leaps(*to) {
                     (STUCK_SAMPLES_BEFORE_A_LEAP, STUCK_BEFORE_A_LEAP_S)
                 } else {
                     (STUCK_SAMPLES, STUCK_S)
@@ -216,6 +216,7 @@ fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fa
             continue;
         }
         runs += 1;
+        leaps_everywhere &= long.iter().all(|(_, to)| leaps(*to));
         // The motion is smoothed over samples before and after, and what is stuck spoils it there as well.
         let beside_s = if name.contains("speed") { drive.measured.how.smoothing_s } else { 0.0 };
         for (from, to) in long {
@@ -226,8 +227,9 @@ fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fa
             usable[run][first..end].fill(false);
         }
     }
-    // What every run shows is how the vehicle was driven, and no fault, but where noise alone would have moved the channel.
-    (runs > 0 && (noisy_everywhere || 2 * runs <= drives.len().max(2))).then(|| Fault {
+    // What every run shows is how the vehicle was driven, and no fault, but where noise alone would have moved the channel, and
+    // where it has to catch up each time.
+    (runs > 0 && (noisy_everywhere || leaps_everywhere || 2 * runs <= drives.len().max(2))).then(|| Fault {
         id: "stuck_channel",
         channel: name.to_owned(),
         size: seconds,

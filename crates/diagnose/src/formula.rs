@@ -43,8 +43,9 @@ impl Sought {
             _ => &[],
         };
         let shows = shows.iter().filter(|kind| system.has(**kind));
-        let mut per_unit =
-            shows.map(|kind| Ok((*kind, per_watt(case, system, *kind)?))).collect::<Result<Vec<_>, DiagnoseError>>()?;
+        let mut per_unit = shows
+            .map(|kind| Ok((*kind, per_watt(case, system, *kind)?)))
+            .collect::<Result<Vec<_>, DiagnoseError>>()?;
         if per_unit.is_empty() {
             per_unit.push((kind, 1.0));
         }
@@ -53,7 +54,9 @@ impl Sought {
 
     /// What a balance's rows are made of, of what a formula says of a run; nothing where it does not show there.
     pub fn samples(&self, kind: Kind, run: usize, said: &[f64]) -> Vec<f64> {
-        let Some((_, per_unit)) = self.per_unit.iter().find(|(own, _)| *own == kind) else { return Vec::new() };
+        let Some((_, per_unit)) = self.per_unit.iter().find(|(own, _)| *own == kind) else {
+            return Vec::new();
+        };
         let whole = |index: usize| self.whole.as_ref().map_or(1.0, |whole| whole[run][index]);
         said.iter().enumerate().map(|(index, value)| per_unit * whole(index) * value).collect()
     }

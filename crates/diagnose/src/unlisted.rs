@@ -167,7 +167,7 @@ fn beside(
         for stand in [more, Some(stand)].into_iter().flatten() {
             let simpler = state.simpler(&stand, &found.stand);
             let more = worth(&stand) - worth(&found.stand);
-            let clearly = more > state.margin(&found, simpler);
+            let clearly = more > state.margin(&found, &stand);
             let able = !state.impossible(&stand.parts, &stand.estimate)
                 && (clearly || simpler && more > -TOLERANCE)
                 && state.works_widely(&stand)
@@ -237,16 +237,20 @@ fn is_undetermined(law: &Law) -> bool {
 
 impl State<'_> {
     /// How much better than what was found a set with a law has to be. What differs from run to run has no shape that would
-    /// be known from elsewhere.
-    fn margin(&self, found: &Found, simpler: bool) -> f64 {
+    /// be known from elsewhere, and three causes that one term says better patch each other.
+    fn margin(&self, found: &Found, stand: &Stand) -> f64 {
+        /// Causes that a law of so many terms less takes the place of.
+        const PATCHES: usize = 2;
         let (shapeless, shaped): (Vec<Part>, Vec<Part>) =
             found.stand.parts.iter().cloned().partition(|part| self.cause(&part.trial).by_run);
         let alone = if shapeless.is_empty() { None } else { self.settle(&shapeless, &found.stand.noises) };
         let brought = worth(&found.stand) - worth(alone.as_ref().unwrap_or(&found.first));
         let shaped = shaped.len();
+        let simpler = self.simpler(stand, &found.stand);
         let fewer = match (shaped, found.stand.parts.len()) {
             (0, 0) => 0.0,
             (0, _) => 1.0,
+            _ if shaped >= self.pieces(stand) + PATCHES => 0.0,
             _ => 3usize.saturating_sub(shaped).max(usize::from(simpler)) as f64,
         };
         let share = if simpler { SIMPLER } else { BETTER };

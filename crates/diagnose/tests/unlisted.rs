@@ -6,7 +6,7 @@
 mod setting;
 
 use headland_calibrate::statistics::Draws;
-use headland_diagnose::{Diagnosed, FindingKind, Options, Verdict};
+use headland_diagnose::{Diagnosed, FindingKind, Kind, Options, Verdict};
 use headland_plugin::Situation;
 use headland_recording::Recording;
 use headland_scenario::Scenario;
@@ -184,6 +184,43 @@ fn an_engine_that_starts_cold_in_some_runs_is_found_with_its_friction() {
     assert_eq!(found.findings[0].id, "cold_start", "{}", found.answer);
     let torque = &found.findings[0].parameters[0];
     assert!((torque.value / TORQUE_N_M - 1.0).abs() < 0.2, "{torque:?}: {}", found.answer);
+}
+
+/// Fuel alone says as much of friction in the engine as of a consumer; the torque at its shaft tells them apart, each by the
+/// balance in which it shows first.
+#[test]
+fn torque_beside_fuel_tells_a_consumer_from_friction_in_the_engine() {
+    let registry = headland_stock::registry();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "fuel_rate_kg_s" => value + 1e-4 * draws.normal(),
+        "engine_torque_n_m" => value + 12.0 * draws.normal(),
+        "tractive_force_n" => value + 100.0 * draws.normal(),
+        _ => value,
+    };
+    let channels = [
+        "speed_m_s",
+        "position_m",
+        "heading_rad",
+        "tractive_force_n",
+        "engine_torque_n_m",
+        "engine_speed_rad_s",
+        "fuel_rate_kg_s",
+    ];
+    for (hidden, id, balance, amount) in [
+        ("auxiliary_power(power_w: 9e3)", "auxiliary_power", Kind::Shaft, 9e3),
+        ("engine_friction(torque_n_m: 90.0)", "engine_friction", Kind::Fuel, 90.0),
+    ] {
+        let recording = recording_of_scenario(&with_an_engine(hidden), &registry, &channels, (7, &noisy));
+        let found =
+            found_of_scenario(&with_an_engine(""), &recording, &Options::default(), &registry).unwrap();
+        let said = &found.diagnosis;
+        let ids: Vec<&str> = said.findings.iter().map(|finding| finding.id.as_str()).collect();
+        assert_eq!(ids, [id], "{}", said.answer);
+        assert_eq!(said.findings[0].balance, balance, "{}", said.answer);
+        let value = said.findings[0].parameters[0].value;
+        assert!((value / amount - 1.0).abs() < 0.1, "{value}: {}", said.answer);
+    }
 }
 
 /// Where the true cause is not in the library, no other is claimed as if it were certain.

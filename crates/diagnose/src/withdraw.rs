@@ -6,7 +6,7 @@ use crate::contradiction::withhold;
 use crate::events::Event;
 use crate::faults::Fault;
 use crate::mirror::is_whole;
-use crate::prove::{Proof, prove, told_by};
+use crate::prove::{Errors, Proof, prove, told_by};
 use crate::refine::{Cured, Refined, refine, spells};
 use crate::search::{Found, Rival};
 use crate::state::{Part, State};
@@ -45,6 +45,18 @@ impl Proven {
     pub fn is_worse_than(&self, other: &Self) -> bool {
         let held_out = self.worsened().zip(other.worsened());
         held_out.is_some_and(|(own, other)| own > (1.0 + RISES) * other)
+    }
+
+    /// Whether all runs, those that were fitted too, are clearly worse with what is claimed than with the nominal scenario: what
+    /// a part of the rows asks for is then something else.
+    fn harms(&self) -> bool {
+        /// Errors that rise by so much are no matter of noise.
+        const CLEARLY: f64 = 1.5;
+        let worse = |errors: &Errors| errors.after > CLEARLY * errors.before;
+        !self.refined.causes.is_empty()
+            && self.withheld.is_none()
+            && worse(&self.proof.fitted)
+            && self.proof.held_out.as_ref().is_some_and(worse)
     }
 
     /// Error on runs held out over that of the nominal scenario, where there are any.
@@ -91,6 +103,12 @@ pub fn proven(
     }
     if let Some(lesser) = without_nothing(case, system, pool, &best, (events, by))? {
         best = lesser;
+    }
+    if best.harms() {
+        let claimed: Vec<&str> = best.refined.causes.iter().map(|cured| cured.cause.words).collect();
+        best.withheld = Some(harmful(claimed));
+        best.refined.causes.clear();
+        best.proof = prove(case, system, &best.refined, by)?;
     }
     if withdrawn && best.refined.causes.is_empty() && best.withheld.is_none() && faults.is_empty() {
         best.withheld = Some(nothing_left(case, &best.found));
@@ -186,6 +204,16 @@ fn is_nothing(cured: &Cured) -> bool {
     cured.cause.form == Form::Parameters
         && known.peek().is_some()
         && known.all(|ci95| ci95[0] <= 0.0 && ci95[1] >= 0.0)
+}
+
+/// What is said where what was found does harm.
+fn harmful(mut claimed: Vec<&str>) -> String {
+    claimed.dedup();
+    format!(
+        "Something is missing that nothing of what was tried explains: {} would explain a part of the rows and leaves the runs \
+         as a whole worse than the scenario by itself, so nothing of it is claimed.",
+        claimed.join(" and ")
+    )
 }
 
 /// What is said where everything was taken back.

@@ -84,6 +84,8 @@ pub(crate) struct Instant {
     pub slip: f64,
     /// Power that it takes [W].
     pub slip_w: f64,
+    /// Whether the brakes hold wheels that slide: what they take is then taken by sliding.
+    pub locked: bool,
 }
 
 impl Instant {
@@ -166,6 +168,18 @@ impl Asked<'_> {
         }
     }
 
+    /// What brakes do of what they would: the ground holds braked wheels by `most_n` in all, and they slide where it takes more
+    /// than that. A vehicle at rest is held with whatever it takes as long as the ground does.
+    #[inline(always)]
+    pub fn held_by_ground(&self, brake_n: f64, most_n: f64, driving_n: f64, held_n: f64) -> (f64, bool) {
+        // What was recorded was driven, whatever the ground of the model would have held.
+        let short = brake_n > most_n && !self.given.driven;
+        if !short || (self.direction == 0.0 && driving_n.abs() <= held_n + most_n) {
+            return (brake_n, false);
+        }
+        (most_n.max(0.0), true)
+    }
+
     /// The direction in which resistances act, and the acceleration [m/s²].
     ///
     /// Motion takes every resistance with it; at rest they only hold against what pushes.
@@ -200,6 +214,8 @@ pub(crate) struct Rolled {
     /// Slip of the driveline's speed, and the speed at which the wheels roll [m/s], without what effects add.
     pub slip: f64,
     pub rolling_m_s: f64,
+    /// Whether the brakes hold wheels that slide.
+    pub locked: bool,
 }
 
 impl Model {
@@ -482,7 +498,7 @@ pub(crate) fn tell(
         auxiliary_power_w: sums.auxiliary_power_w,
         pto_power_w: sums.pto_power_w,
         hydraulic_power_w: sums.hydraulic_power_w,
-        wheel_speed_m_s: demand.speed_m_s,
+        wheel_speed_m_s: if rolled.locked { 0.0 } else { demand.speed_m_s },
         slip_w_n: if sums.slip_per_n == 0.0 {
             0.0
         } else {
@@ -490,6 +506,7 @@ pub(crate) fn tell(
         },
         slip: rolled.slip,
         slip_w: delivery.force_n * rolling_m_s - rolled.traction_n * situation.speed_m_s,
+        locked: rolled.locked,
     };
     book(&instant, rolled.way, asked.given, slots, actions, powers);
     instant
@@ -516,6 +533,11 @@ fn book(instant: &Instant, way: f64, given: &Given, slots: &Slots, actions: &[Ac
     }
     if let Some(slip) = slots.slip {
         powers[slip] = instant.slip_w;
+        if instant.locked {
+            // A brake that holds a wheel still takes nothing; the ground does, on which it slides.
+            powers[slip] += powers[BRAKES];
+            powers[BRAKES] = 0.0;
+        }
     }
     for (power, action) in powers[slots.first_effect..].iter_mut().zip(actions) {
         *power = (way * instant.resistance_n(action) - action.force_n) * speed_m_s + instant.power_w(action);

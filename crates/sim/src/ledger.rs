@@ -87,7 +87,7 @@ pub(crate) const LOSSES_AT_ONCE: usize = 4;
 pub(crate) struct Slots {
     pub names: Vec<String>,
     pub first_effect: usize,
-    /// What the slip of wheels takes; `None` where the vehicle has no axles.
+    /// What wheels that slip or slide take; `None` where the vehicle has no axles, and its brakes no limit.
     pub slip: Option<usize>,
 }
 
@@ -111,7 +111,8 @@ impl Slots {
         names.extend(model.driveline.losses().iter().map(|&name| name.to_owned()));
         let first_effect = names.len();
         names.extend(model.effects.iter().map(|effect| effect.name.clone()));
-        let slip = model.axles.is_some().then(|| {
+        let slides = model.axles.is_some() || model.vehicle.brake_friction.is_finite();
+        let slip = slides.then(|| {
             names.push("slip".to_owned());
             names.len() - 1
         });

@@ -34,8 +34,9 @@ impl Running<'_> {
                     return self.follow(&reference, &ending, None);
                 }
                 let (gain, target, hand) = (self.cycle.driver_gain_per_s, self.target_m_s, self.hand());
-                let control =
-                    |at: &Moment| (Command::Accelerate(gain * (target - at.speed_m_s)), hand.given(at.time_s));
+                let control = |at: &Moment| {
+                    (Command::Accelerate(gain * (target - at.speed_m_s)), hand.given(at.time_s))
+                };
                 self.until(&control, &ending, f64::INFINITY, None)?;
                 Ok(ending.told(&self.machine.moment()))
             }

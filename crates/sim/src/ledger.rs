@@ -1,6 +1,7 @@
 //! Where the energy came from and where it went.
 
 use crate::Model;
+use headland_plugin::MAX_LOSSES;
 use serde::Serialize;
 
 /// One line of the ledger.
@@ -78,10 +79,6 @@ pub(crate) const HYDRAULICS: usize = 7;
 pub(crate) const AUXILIARY: usize = 8;
 pub(crate) const MASS_CHANGE: usize = 9;
 pub(crate) const FIRST_LOSS: usize = 10;
-/// So many losses are written at once, and what stands behind them after that: a copy of a length that is known beforehand is
-/// no call.
-pub(crate) const LOSSES_AT_ONCE: usize = 4;
-
 /// Names of the accounts, by index: the fixed ones, the driveline's losses, the effects.
 #[derive(Debug)]
 pub(crate) struct Slots {
@@ -121,7 +118,6 @@ impl Slots {
 
     /// How many accounts there are, those without a name included into which losses are written that nobody has.
     pub fn count(&self) -> usize {
-        let losses = self.first_effect - FIRST_LOSS;
-        self.names.len().max(FIRST_LOSS + losses.next_multiple_of(LOSSES_AT_ONCE))
+        self.names.len().max(FIRST_LOSS + MAX_LOSSES)
     }
 }

@@ -147,7 +147,7 @@ mod tests {
             "\"road\": Brixius(moist: (soil_type: CL),\nconstruction: Radial, pass_factor: 1)",
         );
         assert!(
-            lacking.contains("lacks the field `moisture`") && lacking.contains("test.ron:9:77"),
+            lacking.contains("lacks the field `moisture`") && lacking.contains("test.ron:9:82"),
             "{lacking}"
         );
     }

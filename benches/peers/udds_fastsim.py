@@ -324,14 +324,14 @@ def rates(bench, rounds, turns, cars):
             for index, rate in enumerate(mine):
                 # A turn's own ratio is that of neighbours in time.
                 each = [own / other for own, other in zip(rate, theirs[balanced][index :: len(FIDELITIES)])]
-                cells.append(f"{thousands(max(rate))} | {max(rate) / best:.1f} times ({min(each):.1f} to {max(each):.1f})")
+                cells.append(f"{thousands(max(rate))} | {np.median(each):.1f} times ({min(each):.1f} to {max(each):.1f}; {max(rate) / best:.1f})")
             lines.append(f"| {what} | {thousands(best)} | " + " | ".join(cells) + " |")
     return [
         *lines,
         "",
         f"One thread, all with steps of 1 s, the simulation alone, both programs in turn in one session: {turns} turns, in each the best of "
-        f"{rounds} walks of FASTSim beside the best of 300 runs of Headland. Rates are the best of all turns, and their ratio; in parentheses the least and the "
-        "greatest ratio of a turn, which is what the machine's moods make of it. FASTSim keeps no history here. It asks a car once a "
+        f"{rounds} walks of FASTSim beside the best of 300 runs of Headland. Rates are the best of all turns. Ratios are the median of those within a turn; in parentheses "
+        "the least and the greatest of them, which is what the machine's moods make of it, and that of the best rates. FASTSim keeps no history here. It asks a car once a "
         "step, as `QuasiStatic` does; `Longitudinal` asks four times a step and more. FASTSim repeats a hybrid's cycle until charge is balanced; *one "
         "pass* leaves that out.",
     ]

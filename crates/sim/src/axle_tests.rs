@@ -543,6 +543,36 @@ fn a_slope_steeper_than_friction_is_slid_down_with_the_brakes_on() {
             assert!(outcome.ledger.relative_residual() < 1e-9);
         } else {
             assert_eq!((speed, last(&outcome, "position_m")), (0.0, 0.0));
+            // What holds at rest is no force of sliding wheels.
+            assert!(outcome.trace.get("brake_force_n").is_none());
         }
     }
+}
+
+/// A recording that stopped harder than the ground of the model holds did stop so.
+#[test]
+fn a_recorded_stop_is_not_held_against_friction() {
+    let firm = Field { firm: true, ..FIELD };
+    let stop = drive(
+        &tractor(None, firm),
+        12.0,
+        0.02,
+        vec![Phase::Hold { for_s: 1.0 }, Phase::Reach { speed_m_s: 2.0, acceleration_m_s2: 4.0 }],
+    );
+    let braked = |friction: f64| {
+        let mut model = tractor(None, firm);
+        model.vehicle.brake_friction = friction;
+        let how = Replay {
+            drive: Drive::Speed,
+            also: Vec::new(),
+            window_s: None,
+            smoothing_s: 0.05,
+            step_s: 0.02,
+            reversed_from_m: None,
+        };
+        let again = replay(&model, &stop.trace, &how).unwrap();
+        again.trace.get("brake_force_n").unwrap().to_vec()
+    };
+    let (free, limited) = (braked(f64::INFINITY), braked(0.1));
+    assert!(free.iter().any(|force| *force > 0.2 * WEIGHT_N) && free == limited);
 }

@@ -149,6 +149,7 @@ fn model(driveline: &str, parameters: &str) -> Model {
             mass_kg: MASS_KG,
             rotating_mass_kg: 0.0,
             resistance: Resistance::Drag { area_m2: DRAG_AREA_M2 },
+            brake_friction: f64::INFINITY,
         },
         gravity_m_s2: GRAVITY_M_S2,
         air: Air {

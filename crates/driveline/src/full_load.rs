@@ -121,7 +121,7 @@ const ROUNDING: f64 = 1e-14;
 
 impl FullLoad {
     /// The lowest speed at which a share of full load gives `constant` + `linear` ω + `cubic` ω³ [W]; that of the greatest
-    /// power where it never does below. Newton's method within the piece of the curve that holds it.
+    /// power where it never does below. A root in closed form, or Newton's method, within the piece of the curve that holds it.
     pub(crate) fn speed_for(&self, share: f64, [constant, linear, cubic]: [f64; 3]) -> f64 {
         for (index, segment) in self.segments.iter().enumerate() {
             let end = self.segments.get(index + 1).map_or(self.last_speed, |next| next.low);
@@ -133,7 +133,10 @@ impl FullLoad {
                 return low;
             }
             if at_high >= 0.0 {
-                let mut speed = (low * at_high - high * at_low) / (at_high - at_low);
+                let chord = (low * at_high - high * at_low) / (at_high - at_low);
+                // Without a fan it is the root of a parabola, on its rising side.
+                let root = 2.0 * constant / (first + (first * first + 4.0 * second * constant).sqrt());
+                let mut speed = if cubic == 0.0 && root > low && root < high { root } else { chord };
                 while high - low > f64::EPSILON * high {
                     let value = spare(speed);
                     if value.abs() <= ROUNDING * (constant.abs() + first.abs() * speed) {

@@ -159,6 +159,8 @@ const OWN: usize = 7;
 
 /// A store that gives or takes less than this part of what the engine gives is left alone.
 const ALONE: f64 = 1e-9;
+/// From as near as this the next step of a search leads nearer than that.
+const NEARLY_ALONE: f64 = 1e-6;
 
 /// At rest a force that misses is weighed as if the vehicle crept [m/s]: no power tells of it.
 const CREEP_M_S: f64 = 0.5;
@@ -210,7 +212,12 @@ impl<T: Topology> Managed<T> {
         let (engine, store) = (self.topology.engine(), self.topology.store());
         let (most_out, most_in) = store.most_w(states[CHARGE], demand.battery_resistance_ohm);
         let others = self.topology.consumers().total_w(demand);
-        let (least, most) = (engine.least_w(&asked.at), engine.most_w(&asked.at));
+        // Of one that stands still nobody asks what it could give.
+        let (least, most) = if share.engine_runs {
+            (engine.least_w(&asked.at), engine.most_w(&asked.at))
+        } else {
+            (0.0, 0.0)
+        };
         let power = |engine_w: f64| share.engine_runs.then_some(engine_w);
         let flow = |force: f64, engine_w: f64| self.topology.flow(&asked, force, power(engine_w));
         let too_much = |flow: &Flow| flow.asked_w.max(flow.bus_w + others - most_out);
@@ -279,7 +286,11 @@ impl<T: Topology> Managed<T> {
                 break;
             }
             let next = two - at_two * (two - one) / (at_two - at_one);
+            let near = at_two.abs() <= NEARLY_ALONE * one.abs().max(two.abs());
             (one, at_one, two) = (two, at_two, next);
+            if near {
+                break;
+            }
         }
         if two.is_finite() { two } else { one }
     }

@@ -9,7 +9,7 @@
 //!
 //! The map is straight between its nodes and is never left: it has to reach as far as the machine does.
 
-use crate::parts::{hold, increasing, place, refuse};
+use crate::parts::{hold, increasing, place, refuse, tapered};
 use headland_plugin::{Bound, Refusal};
 use serde::Deserialize;
 
@@ -249,9 +249,8 @@ impl Motor {
         } else {
             self.max_torque_n_m
         };
-        let cool = (self.derating_to_c - temperature_c) / (self.derating_to_c - self.derating_from_c);
-        let slow = (self.max_speed_rad_s - speed) / (SPEED_TAPER * self.max_speed_rad_s);
-        torque * cool.clamp(0.0, 1.0) * slow.clamp(0.0, 1.0)
+        let cool = tapered(self.derating_to_c - temperature_c, self.derating_to_c - self.derating_from_c);
+        torque * cool * tapered(self.max_speed_rad_s - speed, SPEED_TAPER * self.max_speed_rad_s)
     }
 
     /// How its temperature changes.

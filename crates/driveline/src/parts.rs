@@ -96,6 +96,12 @@ pub(crate) fn increasing(parameter: &str, values: &[f64], least: usize) -> Resul
     }
 }
 
+/// What falls from 1 to 0 as a distance falls from `over` to nothing. Mostly there is nothing to divide.
+#[inline]
+pub(crate) fn tapered(distance: f64, over: f64) -> f64 {
+    if distance >= over { 1.0 } else { (distance / over).clamp(0.0, 1.0) }
+}
+
 /// A grid of no more points is looked through from end to end.
 const SHORT: usize = 24;
 

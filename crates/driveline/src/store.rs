@@ -9,7 +9,7 @@
 //! U(S) is straight between its points. Towards the ends of the window of charge the currents fall to nothing over the last
 //! hundredth. Leaves out temperature, charge that is lost in the cell, and ageing.
 
-use crate::parts::{hold, increasing, place, refuse};
+use crate::parts::{hold, increasing, place, refuse, tapered};
 use headland_plugin::{Bound, Parameter, Refusal, parameter};
 use serde::Deserialize;
 
@@ -185,7 +185,7 @@ impl Store {
     /// Most power at the terminals that it gives, and that it takes; both 0 or more.
     pub(crate) fn most_w(&self, charge: f64, more_ohm: f64) -> (f64, f64) {
         let (u, r) = (self.open_v(charge), self.resistance(more_ohm));
-        let taper = |distance: f64| (distance / TAPER).clamp(0.0, 1.0);
+        let taper = |distance: f64| tapered(distance, TAPER);
         let least_a = self.max_out_a.min((u - self.voltage_window.0) / r).min(0.5 * u / r).max(0.0);
         let out_a = least_a * taper(charge - self.window.0);
         let in_a =

@@ -383,7 +383,7 @@
           data: spec.nodes.map((name, index) => {
             const inner = enters(name) && leaves(name);
             return {
-              name, itemStyle: { color: inner ? t.quiet : t.series[index % t.series.length], borderWidth: 0 },
+              name, itemStyle: { color: inner ? t.quiet : t.series[(spec.colours[name] ?? index) % t.series.length], borderWidth: 0 },
               label: { position: inner ? "top" : enters(name) ? "left" : "right", width: size.width * 0.42, overflow: "break" },
             };
           }),

@@ -54,6 +54,11 @@ pub const ABOUT: &[(&str, &str, &str)] = &[
         "vehicle.slip_limit",
         "greatest slip of the driven wheels: a run that would need more stops; with axles",
     ),
+    (
+        "scenario",
+        "vehicle.brake_friction",
+        "greatest force of the ground on braked wheels over load; without it only a soil that knows single wheels limits them",
+    ),
     ("scenario", "vehicle.body", "what a rigid body needs besides"),
     ("scenario", "vehicle.body.roll_inertia_kg_m2", "about the axis forward"),
     ("scenario", "vehicle.body.pitch_inertia_kg_m2", "about the axis to the left"),

@@ -121,6 +121,37 @@ mod tests {
         assert!(remarks(per_wheel).is_empty());
     }
 
+    /// In the list of the areas, not at its begin.
+    #[test]
+    fn areas_that_are_none_are_refused_where_they_stand() {
+        let second = |corners: &str| {
+            told("north_m: 5)]),", &format!("north_m: 5)]),\n(soil: \"road\", corners: [{corners}])"))
+        };
+        let few = second("(east_m: 1, north_m: 2), (east_m: 3, north_m: 5)");
+        assert!(few.contains("`areas.1.corners` is 2 corners") && few.contains("test.ron:8:25"), "{few}");
+        let odd = second("(east_m: 1, north_m: 2), (east_m: 3, north_m: inf), (east_m: 3, north_m: 5)");
+        assert!(odd.contains("`areas.1.corners.1.north_m` is inf, expected a finite number"), "{odd}");
+        assert!(odd.contains("test.ron:8:72"), "{odd}");
+        let line = second("(east_m: 1, north_m: 1), (east_m: 2, north_m: 2), (east_m: 3, north_m: 3)");
+        assert!(line.contains("in one line") && line.contains("test.ron:8:25"), "{line}");
+    }
+
+    #[test]
+    fn bad_parameters_of_a_soil_of_the_zones_are_refused_where_they_stand() {
+        let negative =
+            told("\"road\": Constant(coefficient: 0.02)", "\"road\": Constant(coefficient: -0.02)");
+        assert!(negative.contains("`coefficient` is -0.02, expected 0 or more"), "{negative}");
+        assert!(negative.contains("test.ron:9:89"), "{negative}");
+        let lacking = told(
+            "\"road\": Constant(coefficient: 0.02)",
+            "\"road\": Brixius(moist: (soil_type: CL),\nconstruction: Radial, pass_factor: 1)",
+        );
+        assert!(
+            lacking.contains("lacks the field `moisture`") && lacking.contains("test.ron:9:82"),
+            "{lacking}"
+        );
+    }
+
     #[test]
     fn soils_that_do_not_fit_the_zones_are_refused_where_they_stand() {
         let unknown = told("(soil: \"road\"", "(soil: \"rood\"");

@@ -52,9 +52,11 @@ pub fn build<T: ?Sized>(
         }),
         Err(BuildError::Parameters { name, error }) => {
             let error = fault::tell(document, &part, name, &error);
+            let own = document.location(part.span.start);
             Err(match error {
-                // A bare name has no parentheses to point at.
-                ScenarioError::MissingField { field, of, .. } => {
+                // The name says more than its parentheses, which a bare one does not even have. A part of the model is pointed at
+                // where it stands itself.
+                ScenarioError::MissingField { field, of, at } if at == own || skipped == node.span.len() => {
                     ScenarioError::MissingField { field, of, at: document.location(node.span.start) }
                 }
                 other => other,
@@ -76,8 +78,14 @@ pub fn build<T: ?Sized>(
 fn nearest<'a>(node: &'a Node, path: &str) -> &'a Node {
     let mut nearest = node;
     for part in path.split(['.', '[']) {
-        match nearest.field(part) {
-            Some(field) => nearest = &field.value,
+        let next = match &nearest.shape {
+            Shape::List(values) => {
+                part.trim_end_matches(']').parse().ok().and_then(|at: usize| values.get(at))
+            }
+            _ => nearest.field(part).map(|field| &field.value),
+        };
+        match next {
+            Some(next) => nearest = next,
             None => break,
         }
     }

@@ -219,13 +219,14 @@ fn parse(document: &Document) -> Result<ScenarioFile, ScenarioError> {
 }
 
 /// Bounds of the scenario's own numbers.
-const BOUNDS: [(&str, Bound); 22] = [
+const BOUNDS: [(&str, Bound); 23] = [
     ("vehicle.mass_kg", Bound::Positive),
     ("vehicle.rotating_mass_kg", Bound::NotNegative),
     ("vehicle.drag_area_m2", Bound::NotNegative),
     ("vehicle.centre_of_gravity_height_m", Bound::Within(0.0, 10.0)),
     ("vehicle.hitch_height_m", Bound::Within(0.0, 10.0)),
     ("vehicle.slip_limit", Bound::Within(0.01, 0.9)),
+    ("vehicle.brake_friction", Bound::Within(0.01, 3.0)),
     ("vehicle.road_load.f0_n", Bound::Finite),
     ("vehicle.road_load.f1_n_s_m", Bound::Finite),
     ("vehicle.road_load.f2_n_s2_m2", Bound::NotNegative),
@@ -347,6 +348,7 @@ fn model(
             mass_kg: file.vehicle.mass_kg,
             rotating_mass_kg: file.vehicle.rotating_mass_kg,
             resistance,
+            brake_friction: file.vehicle.brake_friction.unwrap_or(f64::INFINITY),
         },
         gravity_m_s2: file.gravity_m_s2.unwrap_or(STANDARD_GRAVITY_M_S2),
         air: Air {

@@ -213,3 +213,27 @@ fn lines_that_end_with_a_return_alone_are_counted() {
     let (told, at) = (error.told(), error.location().unwrap());
     assert!(told.contains("found `3`") && (at.line, at.column) == (3, 14), "{told} {at:?}");
 }
+
+/// It was told at the driveline, in a file that was complete.
+#[test]
+fn a_field_that_an_included_part_lacks_is_told_at_that_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let motor = "// a motor\n(\n    max_power_w: 1e5,\n    max_speed_rad_s: 900,\n)\n";
+    std::fs::write(folder.path().join("motor.ron"), motor).unwrap();
+    let driveline = "BatteryElectric(\n            motor: include(\"motor.ron\"), gear_ratios: [20])";
+    let text = GOOD.replacen("Neutral", driveline, 1);
+    let error = Scenario::of_text("test.ron", &text, folder.path(), &headland_stock::registry());
+    let told = error.unwrap_err().told();
+    assert!(told.contains("`motor` lacks the field `max_torque_n_m`"), "{told}");
+    assert!(told.contains("motor.ron:2:1"), "{told}");
+    // One that the driveline itself lacks is told at its name.
+    let whole = motor.replace("max_power_w", "max_torque_n_m: 400, max_power_w").replace(
+        "900,",
+        "900, copper_w_per_n2_m2: 0.06, iron_torque_n_m: 1, windage_n_m_s2: 2e-6, constant_loss_w: 300, heat_capacity_j_k: 15e3, \
+         cooling_w_k: 60, coolant_temperature_c: 65, derating_from_c: 140, derating_to_c: 160,",
+    );
+    std::fs::write(folder.path().join("motor.ron"), whole).unwrap();
+    let error = Scenario::of_text("test.ron", &text, folder.path(), &headland_stock::registry());
+    let told = error.unwrap_err().told();
+    assert!(told.contains("`BatteryElectric` lacks the field") && told.contains("test.ron:7:20"), "{told}");
+}

@@ -54,6 +54,7 @@ pub struct VehicleFile {
     pub centre_of_gravity_height_m: Option<f64>,
     pub hitch_height_m: Option<f64>,
     pub slip_limit: Option<f64>,
+    pub brake_friction: Option<f64>,
     pub body: Option<BodyFile>,
     #[allow(dead_code, reason = "read by the registry")]
     pub driveline: Any,

@@ -22,7 +22,7 @@ const TYRE: Tyre = Tyre {
 };
 
 /// Gross traction μ W (1 − e^(−k s)) and resistance c W; `firm` knows whole vehicles only.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Field {
     adhesion: f64,
     rate: f64,
@@ -113,6 +113,7 @@ fn tractor(axles: Option<Axles>, soil: Field) -> Model {
             mass_kg: MASS_KG,
             rotating_mass_kg: 0.0,
             resistance: Resistance::Drag { area_m2: 5.0 },
+            brake_friction: f64::INFINITY,
         },
         gravity_m_s2: GRAVITY_M_S2,
         air: Air { density_kg_m3: 1.2, wind_speed_m_s: 0.0, wind_from_rad: 0.0, temperature_c: 12.0 },
@@ -406,4 +407,172 @@ fn a_replay_on_wheels_repeats_the_drive() {
             (backward.get(channel).unwrap()[middle], original.get(channel).unwrap()[middle]);
         assert!((found / expected - 1.0).abs() < 1e-6, "{channel}: {found} {expected}");
     }
+}
+
+/// A stop from 12 m/s that wants 9.5 m/s²; nothing drives, there is no air.
+fn hard_stop(mut model: Model) -> Outcome {
+    model.vehicle.resistance = Resistance::Drag { area_m2: 0.0 };
+    drive(&model, 12.0, 0.01, vec![Phase::Reach { speed_m_s: 0.0, acceleration_m_s2: 9.5 }])
+}
+
+/// Locked wheels find μ W (1 − e^(−k)) and resist c W: (0.7 (1 − e^(−7.992)) + 0.06) g = 7.453 m/s², and 12² / 2a = 9.661 m.
+#[test]
+fn brakes_that_want_more_than_the_ground_holds_lock_the_wheels() {
+    let outcome = hard_stop(tractor(Some(both()), FIELD));
+    assert_eq!(outcome.end, End::Finished);
+    let most = (0.7 * -(-8.0f64 * 0.999).exp_m1() + 0.06) * GRAVITY_M_S2;
+    let slowing = outcome.trace.get("acceleration_m_s2").unwrap();
+    let middle = slowing.len() / 2;
+    assert!((-slowing[middle] / most - 1.0).abs() < 1e-9, "{} {most}", slowing[middle]);
+    assert!((last(&outcome, "position_m") / (72.0 / most) - 1.0).abs() < 1e-6);
+    // What slides takes it all: 10 t · 72 m²/s² less what the ground resists along the way.
+    let kinetic_j = MASS_KG * 72.0;
+    let slid_j = kinetic_j * (1.0 - 0.06 * GRAVITY_M_S2 / most);
+    assert!((account(&outcome, "slip") / slid_j - 1.0).abs() < 1e-6, "{}", account(&outcome, "slip"));
+    assert_eq!(account(&outcome, "brakes"), 0.0);
+    assert!(outcome.ledger.relative_residual() < 1e-9, "{:?}", outcome.ledger);
+    let at = |channel: &str| outcome.trace.get(channel).unwrap()[middle];
+    assert_eq!((at("wheel_speed_m_s"), at("axle_1_slip"), at("axle_2_slip")), (0.0, -1.0, -1.0));
+    // The load moves forward by m a h / L and a little for the resistance, and traction goes with it.
+    assert!(at("axle_1_load_n") > 0.6 * WEIGHT_N + MASS_KG * most * 1.1 / 3.0 - 0.02 * WEIGHT_N);
+    let held = at("axle_1_traction_n") + at("axle_2_traction_n");
+    assert!((held / (-MASS_KG * most + 0.06 * WEIGHT_N) - 1.0).abs() < 1e-9, "{held}");
+}
+
+/// The same where the rear wheels alone are driven: brakes sit on every wheel.
+#[test]
+fn brakes_hold_the_wheels_that_nothing_drives() {
+    let both = hard_stop(tractor(Some(both()), FIELD));
+    let rear = hard_stop(tractor(Some(stand(None, Some(1.0))), FIELD));
+    let (both, rear) = (last(&both, "position_m"), last(&rear, "position_m"));
+    assert!((rear / both - 1.0).abs() < 1e-9, "{rear} {both}");
+}
+
+/// A driveline that brakes with 40 kN, and the brakes beside it, find no more than the brakes alone.
+#[test]
+fn what_the_driveline_brakes_is_not_held_twice() {
+    #[derive(Debug)]
+    struct Retarder;
+    impl Driveline for Retarder {
+        fn losses(&self) -> &'static [&'static str] {
+            &["retarder"]
+        }
+        fn source(&self) -> &'static str {
+            "store"
+        }
+        fn rotating_mass_kg(&self, _: bool) -> f64 {
+            0.0
+        }
+        fn deliver(&self, demand: &Demand, _: &[f64], _: &mut [f64]) -> Delivery {
+            let force_n = demand.force_n.clamp(-40e3, 0.0);
+            let mut losses_w = [0.0; MAX_LOSSES];
+            losses_w[0] = -force_n * demand.speed_m_s;
+            Delivery { force_n, losses_w, ..Delivery::NOTHING }
+        }
+    }
+    let way_m = |axles: Option<Axles>, friction: f64, soil: Field, retarded: bool| {
+        let mut model = tractor(axles, soil);
+        model.vehicle.brake_friction = friction;
+        if retarded {
+            model.driveline = Box::new(Retarder);
+        }
+        let outcome = hard_stop(model);
+        assert!(outcome.ledger.relative_residual() < 1e-6, "{:?}", outcome.ledger);
+        last(&outcome, "position_m")
+    };
+    let firm = Field { firm: true, ..FIELD };
+    for (axles, friction, soil) in
+        [(Some(both()), f64::INFINITY, FIELD), (Some(both()), 0.6, firm), (None, 0.6, firm)]
+    {
+        let [alone, beside] = [false, true].map(|retarded| way_m(axles.clone(), friction, soil, retarded));
+        assert!((beside / alone - 1.0).abs() < 1e-3, "{alone} {beside}");
+    }
+}
+
+/// On firm ground a stop takes v² / (2 μ g), with axles and without: what resists the wheels is a part of friction.
+#[test]
+fn friction_limits_the_brakes_on_ground_that_knows_no_slip() {
+    for axles in [Some(both()), None] {
+        let mut model = tractor(axles, Field { firm: true, ..FIELD });
+        model.vehicle.brake_friction = 0.5;
+        let outcome = hard_stop(model);
+        let expected = 144.0 / (2.0 * 0.5 * GRAVITY_M_S2);
+        assert!((last(&outcome, "position_m") / expected - 1.0).abs() < 1e-6);
+        let slowing = outcome.trace.get("acceleration_m_s2").unwrap();
+        assert!(slowing.iter().all(|a| *a >= -0.5 * GRAVITY_M_S2 - 1e-9));
+        assert!(account(&outcome, "brakes") == 0.0 && account(&outcome, "slip") > 0.0);
+        assert!(outcome.ledger.relative_residual() < 1e-9);
+    }
+    // The least of the two counts where both are known, wheel by wheel.
+    let mut model = tractor(Some(both()), FIELD);
+    model.vehicle.brake_friction = 0.4;
+    let expected = 72.0 / ((0.4 + 0.06) * GRAVITY_M_S2);
+    assert!((last(&hard_stop(model), "position_m") / expected - 1.0).abs() < 1e-6);
+}
+
+/// Below what the ground holds a limit changes not a bit.
+#[test]
+fn brakes_that_the_ground_holds_do_as_they_are_told() {
+    for (axles, soil) in [(Some(both()), FIELD), (None, Field { firm: true, ..FIELD })] {
+        let stop = |friction: f64| {
+            let mut model = tractor(axles.clone(), soil);
+            model.vehicle.brake_friction = friction;
+            let phases = vec![Phase::Reach { speed_m_s: 0.0, acceleration_m_s2: 3.0 }];
+            drive(&model, 12.0, 0.01, phases)
+        };
+        let (free, limited) = (stop(f64::INFINITY), stop(0.9));
+        assert_eq!(last(&free, "position_m").to_bits(), last(&limited, "position_m").to_bits());
+        assert!(account(&limited, "brakes") == account(&free, "brakes") && account(&free, "brakes") > 1e5);
+    }
+}
+
+/// At rest on a slope of sin 0.5, tan 0.577: brakes hold it where friction is more than that, and it slides where it is less.
+#[test]
+fn a_slope_steeper_than_friction_is_slid_down_with_the_brakes_on() {
+    for (friction, slides) in [(0.6, false), (0.5, true)] {
+        let mut model = tractor(None, Field { firm: true, coefficient: 0.05, ..FIELD });
+        model.vehicle.resistance = Resistance::Drag { area_m2: 0.0 };
+        model.vehicle.brake_friction = friction;
+        model.terrain = Box::new(Incline(0.5));
+        model.driveline = Box::new(Motor { most_n: 0.0, most_w: 0.0 });
+        let outcome = drive(&model, 0.0, 0.01, vec![Phase::Stand { until: Until::Elapsed(2.0) }]);
+        let speed = last(&outcome, "speed_m_s");
+        if slides {
+            let expected = -(0.5 - 0.5 * 0.75f64.sqrt()) * GRAVITY_M_S2 * 2.0;
+            assert!((speed / expected - 1.0).abs() < 1e-9, "{speed} {expected}");
+            assert!(outcome.ledger.relative_residual() < 1e-9);
+        } else {
+            assert_eq!((speed, last(&outcome, "position_m")), (0.0, 0.0));
+            // What holds at rest is no force of sliding wheels.
+            assert!(outcome.trace.get("brake_force_n").is_none());
+        }
+    }
+}
+
+/// A recording that stopped harder than the ground of the model holds did stop so.
+#[test]
+fn a_recorded_stop_is_not_held_against_friction() {
+    let firm = Field { firm: true, ..FIELD };
+    let stop = drive(
+        &tractor(None, firm),
+        12.0,
+        0.02,
+        vec![Phase::Hold { for_s: 1.0 }, Phase::Reach { speed_m_s: 2.0, acceleration_m_s2: 4.0 }],
+    );
+    let braked = |friction: f64| {
+        let mut model = tractor(None, firm);
+        model.vehicle.brake_friction = friction;
+        let how = Replay {
+            drive: Drive::Speed,
+            also: Vec::new(),
+            window_s: None,
+            smoothing_s: 0.05,
+            step_s: 0.02,
+            reversed_from_m: None,
+        };
+        let again = replay(&model, &stop.trace, &how).unwrap();
+        again.trace.get("brake_force_n").unwrap().to_vec()
+    };
+    let (free, limited) = (braked(f64::INFINITY), braked(0.1));
+    assert!(free.iter().any(|force| *force > 0.2 * WEIGHT_N) && free == limited);
 }

@@ -14,11 +14,11 @@
 use crate::Model;
 use crate::deciding::Deciding;
 use crate::ledger::{
-    AIR, AUXILIARY, BRAKES, DRAWBAR, FIRST_LOSS, HYDRAULICS, LOSSES_AT_ONCE, PTO, SLOPE, SOIL, SOURCE, Slots,
+    AIR, AUXILIARY, BRAKES, DRAWBAR, FIRST_LOSS, HYDRAULICS, PTO, SLOPE, SOIL, SOURCE, Slots,
 };
 use crate::model::Layout;
 use crate::wheels::WheelScratch;
-use headland_plugin::{Action, Air, Delivery, Demand, Mode, Situation};
+use headland_plugin::{Action, Air, Delivery, Demand, MAX_LOSSES, Mode, Situation};
 
 /// What the driver, or the recording, wants at this instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,6 +84,8 @@ pub(crate) struct Instant {
     pub slip: f64,
     /// Power that it takes [W].
     pub slip_w: f64,
+    /// Whether the brakes hold wheels that slide: what they take is then taken by sliding.
+    pub locked: bool,
 }
 
 impl Instant {
@@ -166,6 +168,18 @@ impl Asked<'_> {
         }
     }
 
+    /// What brakes do of what they would: the ground holds braked wheels by `most_n` in all, and they slide where it takes more
+    /// than that. A vehicle at rest is held with whatever it takes as long as the ground does.
+    #[inline(always)]
+    pub fn held_by_ground(&self, brake_n: f64, most_n: f64, driving_n: f64, held_n: f64) -> (f64, bool) {
+        // What was recorded was driven, whatever the ground of the model would have held.
+        let short = brake_n > most_n && !self.given.driven;
+        if !short || (self.direction == 0.0 && driving_n.abs() <= held_n + most_n) {
+            return (brake_n, false);
+        }
+        (most_n.max(0.0), true)
+    }
+
     /// The direction in which resistances act, and the acceleration [m/s²].
     ///
     /// Motion takes every resistance with it; at rest they only hold against what pushes.
@@ -200,17 +214,20 @@ pub(crate) struct Rolled {
     /// Slip of the driveline's speed, and the speed at which the wheels roll [m/s], without what effects add.
     pub slip: f64,
     pub rolling_m_s: f64,
+    /// Whether the brakes hold wheels that slide.
+    pub locked: bool,
 }
 
 impl Model {
     /// Evaluates the balance; writes the rates of all states and the power of every account [W]. Where it `DECIDES`, the driveline
-    /// decides as soon as it is known what is asked of it, as far as that does not hang on what it gives.
+    /// decides as soon as it is known what is asked of it, as far as that does not hang on what it gives. Of a `WHOLE` vehicle it is
+    /// known that it has no axles.
     #[allow(
         clippy::too_many_arguments,
         reason = "the inner loop: everything is passed, nothing is allocated"
     )]
     #[inline(always)]
-    pub(crate) fn balance<const DECIDES: bool>(
+    pub(crate) fn balance<const DECIDES: bool, const WHOLE: bool>(
         &self,
         point: Point,
         command: Command,
@@ -225,17 +242,27 @@ impl Model {
         let at = (point, command, given);
         let follows = self.effects.iter().any(|effect| effect.plugin.follows_acceleration());
         let acceleration_m_s2 = if follows {
-            self.balance_at::<false>(at, 0.0, layout, slots, states, rates, powers, scratch).acceleration_m_s2
+            self.balance_at::<false, WHOLE>(at, 0.0, layout, slots, states, rates, powers, scratch)
+                .acceleration_m_s2
         } else {
             0.0
         };
-        self.balance_at::<DECIDES>(at, acceleration_m_s2, layout, slots, states, rates, powers, scratch)
+        self.balance_at::<DECIDES, WHOLE>(
+            at,
+            acceleration_m_s2,
+            layout,
+            slots,
+            states,
+            rates,
+            powers,
+            scratch,
+        )
     }
 
     /// As [`Model::balance`], with what effects are told of the acceleration.
     #[allow(clippy::too_many_arguments, reason = "as in the balance")]
     #[inline(always)]
-    fn balance_at<const DECIDES: bool>(
+    fn balance_at<const DECIDES: bool, const WHOLE: bool>(
         &self,
         (point, command, given): (Point, Command, &Given),
         acceleration_m_s2: f64,
@@ -281,7 +308,7 @@ impl Model {
             slope_n,
             demand,
         };
-        if let (Some(axles), Some(soil)) = (&self.axles, &self.soil) {
+        if !WHOLE && let (Some(axles), Some(soil)) = (&self.axles, &self.soil) {
             // Everything goes there as a copy: what another function may look at does not stay in registers here.
             return self.carried((axles, &**soil), asked, sums, slots, rates, powers, scratch);
         }
@@ -307,6 +334,9 @@ impl Model {
         states: &[f64],
         rates: &mut [f64],
     ) -> f64 {
+        if self.effects.is_empty() {
+            return situation.tractive_force_n;
+        }
         let (mut least_n, mut most_n) = (f64::NEG_INFINITY, f64::INFINITY);
         for (effect, range) in self.effects.iter().zip(&layout.effects) {
             let states = &states[range.clone()];
@@ -482,7 +512,7 @@ pub(crate) fn tell(
         auxiliary_power_w: sums.auxiliary_power_w,
         pto_power_w: sums.pto_power_w,
         hydraulic_power_w: sums.hydraulic_power_w,
-        wheel_speed_m_s: demand.speed_m_s,
+        wheel_speed_m_s: if rolled.locked { 0.0 } else { demand.speed_m_s },
         slip_w_n: if sums.slip_per_n == 0.0 {
             0.0
         } else {
@@ -490,6 +520,7 @@ pub(crate) fn tell(
         },
         slip: rolled.slip,
         slip_w: delivery.force_n * rolling_m_s - rolled.traction_n * situation.speed_m_s,
+        locked: rolled.locked,
     };
     book(&instant, rolled.way, asked.given, slots, actions, powers);
     instant
@@ -499,23 +530,27 @@ pub(crate) fn tell(
 #[inline(always)]
 fn book(instant: &Instant, way: f64, given: &Given, slots: &Slots, actions: &[Action], powers: &mut [f64]) {
     let speed_m_s = instant.situation.speed_m_s;
-    powers[SOURCE] = instant.delivery.source_power_w;
-    powers[SOIL] = way * instant.soil_n * speed_m_s;
-    powers[AIR] = -instant.air_n * speed_m_s;
-    powers[SLOPE] = instant.slope_n * speed_m_s;
-    powers[BRAKES] = way * instant.brake_n * speed_m_s;
-    powers[DRAWBAR] = (way * instant.drawbar_n - instant.pushed_n) * speed_m_s;
-    powers[PTO] = instant.pto_power_w;
-    powers[HYDRAULICS] = instant.hydraulic_power_w;
-    powers[AUXILIARY] = given.auxiliary_power_w.unwrap_or(0.0);
-    let accounts = powers[FIRST_LOSS..].chunks_exact_mut(LOSSES_AT_ONCE);
-    let (losses, _) = instant.delivery.losses_w.as_chunks::<LOSSES_AT_ONCE>();
-    let groups = (slots.first_effect - FIRST_LOSS).div_ceil(LOSSES_AT_ONCE);
-    for (group, losses) in accounts.zip(losses).take(groups) {
-        group.copy_from_slice(losses);
-    }
+    // All losses are written at once, and what stands in the place of those that nobody has after them.
+    let (fixed, _) = powers
+        .split_first_chunk_mut::<{ FIRST_LOSS + MAX_LOSSES }>()
+        .unwrap_or_else(|| unreachable!("so many there are"));
+    fixed[SOURCE] = instant.delivery.source_power_w;
+    fixed[SOIL] = way * instant.soil_n * speed_m_s;
+    fixed[AIR] = -instant.air_n * speed_m_s;
+    fixed[SLOPE] = instant.slope_n * speed_m_s;
+    fixed[BRAKES] = way * instant.brake_n * speed_m_s;
+    fixed[DRAWBAR] = (way * instant.drawbar_n - instant.pushed_n) * speed_m_s;
+    fixed[PTO] = instant.pto_power_w;
+    fixed[HYDRAULICS] = instant.hydraulic_power_w;
+    fixed[AUXILIARY] = given.auxiliary_power_w.unwrap_or(0.0);
+    fixed[FIRST_LOSS..].copy_from_slice(&instant.delivery.losses_w);
     if let Some(slip) = slots.slip {
         powers[slip] = instant.slip_w;
+        if instant.locked {
+            // A brake that holds a wheel still takes nothing; the ground does, on which it slides.
+            powers[slip] += powers[BRAKES];
+            powers[BRAKES] = 0.0;
+        }
     }
     for (power, action) in powers[slots.first_effect..].iter_mut().zip(actions) {
         *power = (way * instant.resistance_n(action) - action.force_n) * speed_m_s + instant.power_w(action);

@@ -276,6 +276,7 @@ impl Model {
             traction_n: delivery.force_n,
             slip: motion.slip,
             rolling_m_s,
+            locked: false,
         }
     }
 }

@@ -1,9 +1,10 @@
 //! How each kind of phase is driven.
 
-use crate::balance::{Command, Given, Instant};
+use crate::balance::{Command, Instant};
 use crate::cycle::{Hopeless, Running};
 use crate::ending::Ending;
-use crate::plan::{EngineSpeed, Phase, Until};
+use crate::hand::{Hand, Knowing, Standing};
+use crate::plan::{Phase, Until};
 use crate::reference::{Driver, Reference};
 use crate::step::{Machine, Moment};
 use std::cell::Cell;
@@ -15,19 +16,9 @@ const NO_MORE_ACCELERATION_M_S2: f64 = 1e-5;
 const PROGRESS_M_S: f64 = 1e-3;
 
 impl Running<'_> {
-    /// What the driver keeps at hand, by time.
-    fn given(&self) -> impl Fn(f64) -> Given + use<> {
-        let begin_s = self.machine.time_s;
-        let (kept, over) = match &self.setting.engine_speed {
-            EngineSpeed::Free => (0.0, None),
-            EngineSpeed::Kept(speed) => (*speed, None),
-            EngineSpeed::Over(points) => (0.0, Some(Reference::along(begin_s, points))),
-        };
-        let backward = self.backward;
-        move |time_s| {
-            let engine_speed_rad_s = over.as_ref().map_or(kept, |over| over.speed_m_s(time_s));
-            Given { backward, engine_speed_rad_s, ..Given::default() }
-        }
+    /// What the driver keeps at hand.
+    fn hand(&self) -> Hand {
+        Hand::new(self.machine.time_s, &self.setting.engine_speed, self.backward)
     }
 
     /// Drives a phase; says what ended it.
@@ -42,9 +33,10 @@ impl Running<'_> {
                     let reference = Reference::steady(begin_s, self.target_m_s);
                     return self.follow(&reference, &ending, None);
                 }
-                let (gain, target, given) = (self.cycle.driver_gain_per_s, self.target_m_s, self.given());
-                let control =
-                    |at: &Moment| (Command::Accelerate(gain * (target - at.speed_m_s)), given(at.time_s));
+                let (gain, target, hand) = (self.cycle.driver_gain_per_s, self.target_m_s, self.hand());
+                let control = |at: &Moment| {
+                    (Command::Accelerate(gain * (target - at.speed_m_s)), hand.given(at.time_s))
+                };
                 self.until(&control, &ending, f64::INFINITY, None)?;
                 Ok(ending.told(&self.machine.moment()))
             }
@@ -80,8 +72,8 @@ impl Running<'_> {
         if target == self.machine.speed_m_s() {
             return Ok("it drives at that speed".to_owned());
         }
-        let given = self.given();
-        let control = |at: &Moment| (Command::Accelerate(rate), given(at.time_s));
+        let hand = self.hand();
+        let control = |at: &Moment| (Command::Accelerate(rate), hand.given(at.time_s));
         let ending = Ending::at_speed(target, up);
         let patience_s = self.machine.model.driveline.patience_s();
         // How far it came, and when.
@@ -109,8 +101,8 @@ impl Running<'_> {
     }
 
     fn coast(&mut self, until: &Until) -> Result<String, String> {
-        let given = self.given();
-        let control = |at: &Moment| (Command::Coast, given(at.time_s));
+        let hand = self.hand();
+        let control = |at: &Moment| (Command::Coast, hand.given(at.time_s));
         let ending = Ending::of(until, &self.machine)?;
         // Time comes to a vehicle at rest too; and one that was at rest may be waiting for a slope's pull.
         let moving = self.machine.speed_m_s() != 0.0;
@@ -148,9 +140,9 @@ impl Running<'_> {
         self.target_m_s = target;
         if target == 0.0 {
             if speed != 0.0 {
-                let given = self.given();
+                let hand = self.hand();
                 let slowing = -way * acceleration_m_s2;
-                let control = |at: &Moment| (Command::Accelerate(slowing), given(at.time_s));
+                let control = |at: &Moment| (Command::Accelerate(slowing), hand.given(at.time_s));
                 let rests = |machine: &Machine, _: &Instant| (machine.speed_m_s() == 0.0).then(String::new);
                 match self.until(&control, &ending, f64::INFINITY, Some(&rests)) {
                     Err(reason) if reason.is_empty() => {}
@@ -194,19 +186,28 @@ impl Running<'_> {
     ) -> Result<String, String> {
         let driver = self.setting.driver.map_or(Driver::Knowing(self.cycle.driver_gain_per_s), Driver::Pi);
         let memory = self.machine.layout.driver;
-        let given = self.given();
+        let hand = self.hand();
         // A piece ends where the next one begins, to the bit: rounding must not leave the vehicle on the last one.
         for (piece, corner_s) in reference.corners_s().into_iter().chain([f64::INFINITY]).enumerate() {
-            let control = |at: &Moment| driver.follow(reference, piece, memory, at, given(at.time_s));
             self.target_m_s = if corner_s.is_finite() {
                 reference.on(piece + 1, corner_s).0
             } else {
                 reference.speed_m_s(self.machine.time_s)
             };
-            let ended = if self.quasi_static && matches!(driver, Driver::Knowing(_)) {
-                self.along((reference, piece), &control, ending, corner_s, hopeless)?
-            } else {
-                self.until(&control, ending, corner_s, hopeless)?
+            let ended = match driver {
+                Driver::Knowing(gain_per_s) => {
+                    let control = Knowing { gain_per_s, reference, piece, hand: &hand };
+                    if self.quasi_static {
+                        self.along((reference, piece), &control, ending, corner_s, hopeless)?
+                    } else {
+                        self.until(&control, ending, corner_s, hopeless)?
+                    }
+                }
+                Driver::Pi(pi) => {
+                    let control =
+                        |at: &Moment| pi.follow(reference, piece, memory, at, hand.given(at.time_s));
+                    self.until(&control, ending, corner_s, hopeless)?
+                }
             };
             if ended {
                 break;
@@ -222,11 +223,11 @@ impl Running<'_> {
         }
         // A speed by place is a reference over position in place of time.
         let wanted = Reference::along(0.0, profile);
-        let (gain, given) = (self.cycle.driver_gain_per_s, self.given());
+        let (gain, hand) = (self.cycle.driver_gain_per_s, self.hand());
         let control = |at: &Moment| {
             let (speed, slope) = wanted.at(at.position_m);
             let acceleration = slope * at.speed_m_s + gain * (speed - at.speed_m_s);
-            (Command::Accelerate(acceleration.clamp(-most, most)), given(at.time_s))
+            (Command::Accelerate(acceleration.clamp(-most, most)), hand.given(at.time_s))
         };
         self.until(&control, &ending, f64::INFINITY, Some(&|machine, instant| {
             (machine.speed_m_s() == 0.0 && instant.acceleration_m_s2 <= 0.0).then(|| {
@@ -243,8 +244,8 @@ impl Running<'_> {
             return Err("the vehicle stands, and nothing that the phase waits for comes to one that stands"
                 .to_owned());
         }
-        let given = self.given();
-        let control = |at: &Moment| (Command::Accelerate(0.0), given(at.time_s));
+        let hand = self.hand();
+        let control = Standing(&hand);
         if self.quasi_static {
             let rest = Reference::steady(self.machine.time_s, 0.0);
             self.along((&rest, 0), &control, ending, f64::INFINITY, None)?;

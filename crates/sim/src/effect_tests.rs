@@ -90,6 +90,7 @@ fn model(effects: Vec<Box<dyn Effect>>) -> Model {
             mass_kg: MASS_KG,
             rotating_mass_kg: 0.0,
             resistance: Resistance::Drag { area_m2: 0.0 },
+            brake_friction: f64::INFINITY,
         },
         gravity_m_s2: 9.81,
         air: Air { density_kg_m3: 1.2, ..Air::default() },

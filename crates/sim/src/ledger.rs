@@ -1,6 +1,7 @@
 //! Where the energy came from and where it went.
 
 use crate::Model;
+use headland_plugin::MAX_LOSSES;
 use serde::Serialize;
 
 /// One line of the ledger.
@@ -78,16 +79,12 @@ pub(crate) const HYDRAULICS: usize = 7;
 pub(crate) const AUXILIARY: usize = 8;
 pub(crate) const MASS_CHANGE: usize = 9;
 pub(crate) const FIRST_LOSS: usize = 10;
-/// So many losses are written at once, and what stands behind them after that: a copy of a length that is known beforehand is
-/// no call.
-pub(crate) const LOSSES_AT_ONCE: usize = 4;
-
 /// Names of the accounts, by index: the fixed ones, the driveline's losses, the effects.
 #[derive(Debug)]
 pub(crate) struct Slots {
     pub names: Vec<String>,
     pub first_effect: usize,
-    /// What the slip of wheels takes; `None` where the vehicle has no axles.
+    /// What wheels that slip or slide take; `None` where the vehicle has no axles, and its brakes no limit.
     pub slip: Option<usize>,
 }
 
@@ -111,7 +108,8 @@ impl Slots {
         names.extend(model.driveline.losses().iter().map(|&name| name.to_owned()));
         let first_effect = names.len();
         names.extend(model.effects.iter().map(|effect| effect.name.clone()));
-        let slip = model.axles.is_some().then(|| {
+        let slides = model.axles.is_some() || model.vehicle.brake_friction.is_finite();
+        let slip = slides.then(|| {
             names.push("slip".to_owned());
             names.len() - 1
         });
@@ -120,7 +118,6 @@ impl Slots {
 
     /// How many accounts there are, those without a name included into which losses are written that nobody has.
     pub fn count(&self) -> usize {
-        let losses = self.first_effect - FIRST_LOSS;
-        self.names.len().max(FIRST_LOSS + losses.next_multiple_of(LOSSES_AT_ONCE))
+        self.names.len().max(FIRST_LOSS + MAX_LOSSES)
     }
 }

@@ -18,6 +18,7 @@ mod driving;
 #[cfg(test)]
 mod effect_tests;
 mod ending;
+mod hand;
 mod ledger;
 mod model;
 #[cfg(test)]

@@ -12,6 +12,9 @@ pub struct Vehicle {
     pub rotating_mass_kg: f64,
     /// What the air, and perhaps the road, does to it.
     pub resistance: Resistance,
+    /// Greatest force of the ground on braked wheels over what rests on them, μ; infinite where only the soil limits it. A
+    /// carriage knows the friction of its wheels itself.
+    pub brake_friction: f64,
 }
 
 /// How the resistance of the vehicle is known.

@@ -100,6 +100,7 @@ pub(crate) fn tractor(speed_scale_m_s: f64, drag_area_m2: f64) -> Model {
             mass_kg: MASS_KG,
             rotating_mass_kg: -100.0,
             resistance: Resistance::Drag { area_m2: drag_area_m2 },
+            brake_friction: f64::INFINITY,
         },
         gravity_m_s2: GRAVITY_M_S2,
         air: Air { density_kg_m3: 1.235, wind_speed_m_s: 0.0, wind_from_rad: 0.0, temperature_c: 12.0 },

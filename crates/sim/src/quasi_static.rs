@@ -14,7 +14,7 @@ use crate::balance::Instant;
 use crate::cycle::{Hopeless, ON_TIME, Running, sliver};
 use crate::ending::Ending;
 use crate::reference::Reference;
-use crate::step::{Control, FIRST_STATE, Machine, Moment, POSITION, SPEED, sign};
+use crate::step::{Control, FIRST_STATE, Machine, Moment, POSITION, SPEED, derive, sign};
 use headland_plugin::{Delivery, Demand};
 
 /// A speed nearer than this to what is wanted is what is wanted [m/s]: what the rounding of many steps leaves.
@@ -22,6 +22,21 @@ const AS_WANTED_M_S: f64 = 1e-9;
 
 /// The same for an acceleration [m/s²].
 const AS_WANTED_M_S2: f64 = 1e-9;
+
+/// A step to come.
+#[derive(Clone, Copy)]
+struct Ahead {
+    step_s: f64,
+    /// Speed at its end.
+    to_m_s: f64,
+    /// Acceleration along it [m/s²].
+    rate: f64,
+    end_s: f64,
+    /// Where the piece of the speed ends, or the phase.
+    piece_end_s: f64,
+    /// Whether a row is to be written.
+    due: bool,
+}
 
 /// What became of a step.
 enum Met {
@@ -36,14 +51,30 @@ impl Running<'_> {
     /// As [`Running::until`], along a piece of a speed over time.
     pub(crate) fn along(
         &mut self,
-        (reference, piece): (&Reference, usize),
+        on: (&Reference, usize),
+        control: &impl Control,
+        ending: &Ending,
+        piece_end_s: f64,
+        hopeless: Hopeless,
+    ) -> Result<bool, String> {
+        // Decided here, so that within a step there is only one kind of vehicle.
+        if self.machine.model.axles.is_none() {
+            self.along_as::<true>(on, control, ending, piece_end_s, hopeless)
+        } else {
+            self.along_as::<false>(on, control, ending, piece_end_s, hopeless)
+        }
+    }
+
+    fn along_as<const WHOLE: bool>(
+        &mut self,
+        on: (&Reference, usize),
         control: &impl Control,
         ending: &Ending,
         piece_end_s: f64,
         hopeless: Hopeless,
     ) -> Result<bool, String> {
         loop {
-            match self.at_middle((reference, piece), control, ending, piece_end_s, hopeless)? {
+            match self.at_middle::<WHOLE>(on, control, ending, piece_end_s, hopeless)? {
                 Met::Stepped => {}
                 Met::PieceEnds => return Ok(false),
                 Met::Not => {
@@ -55,9 +86,10 @@ impl Running<'_> {
         }
     }
 
+    /// A step by the balance in its middle, once the driveline has decided.
     #[allow(clippy::inline_always, reason = "the inner loop")]
     #[inline(always)]
-    fn at_middle(
+    fn at_middle<const WHOLE: bool>(
         &mut self,
         (reference, piece): (&Reference, usize),
         control: &impl Control,
@@ -85,9 +117,49 @@ impl Running<'_> {
             return Ok(Met::Not);
         }
         self.look_up()?;
+        let half_s = 0.5 * step_s;
+        let due = time_s + half_s > last_row_s + ON_TIME * self.record_s;
+        let ahead = Ahead { step_s, to_m_s, rate, end_s, piece_end_s, due };
+        let machine = &mut self.machine;
+        let own = FIRST_STATE + machine.layout.driveline.start..FIRST_STATE + machine.layout.driveline.end;
+        // An instant that comes of one place alone need not be put together; so each place goes on by itself.
+        if own.is_empty() {
+            let instant = machine.ask_middle::<false, WHOLE>(step_s, to_m_s, control);
+            return self.go_on(&ahead, instant, ending, hopeless);
+        }
+        machine.scratch.deciding.before(&machine.y[own.clone()], half_s);
+        let instant = machine.ask_middle::<true, WHOLE>(step_s, to_m_s, control);
+        let deciding = &machine.scratch.deciding;
+        if deciding.done {
+            machine.y[own.clone()].copy_from_slice(&deciding.begin);
+            if deciding.changed {
+                machine.stage[own].copy_from_slice(&deciding.middle);
+            }
+            return self.go_on(&ahead, instant, ending, hopeless);
+        }
+        // What is asked hangs on what is given, so that has to be known first.
+        let before = instant;
+        if machine.decide(&before) {
+            let instant = machine.ask_middle::<false, WHOLE>(step_s, to_m_s, control);
+            return self.go_on(&ahead, instant, ending, hopeless);
+        }
+        self.go_on(&ahead, instant, ending, hopeless)
+    }
+
+    /// Goes to the end of the step by what came about in its middle.
+    #[allow(clippy::inline_always, reason = "the inner loop")]
+    #[allow(clippy::large_types_passed_by_value, reason = "inlined, it is not even put together")]
+    #[inline(always)]
+    fn go_on(
+        &mut self,
+        ahead: &Ahead,
+        instant: Instant,
+        ending: &Ending,
+        hopeless: Hopeless,
+    ) -> Result<Met, String> {
+        let Ahead { step_s, to_m_s, rate, end_s, piece_end_s, due } = *ahead;
         let machine = &mut self.machine;
         // What is asked comes of the motion; where the drive gives it, the motion is what comes of that.
-        let instant = machine.at_middle(step_s, to_m_s, control);
         let met = (instant.acceleration_m_s2 - rate).abs() <= AS_WANTED_M_S2 * (1.0 + rate.abs());
         if !met {
             return Ok(Met::Not);
@@ -96,12 +168,10 @@ impl Running<'_> {
         if ending.left(&machine.at_end(end_s)) <= 0.0 {
             return Ok(Met::Not);
         }
-        let half_s = 0.5 * step_s;
-        let due = time_s + half_s > last_row_s + ON_TIME * self.record_s;
         // What others may look at is a copy, made where they look: the instant itself is never put together.
         if due || hopeless.is_some() || machine.is_watched() {
             let seen = instant;
-            self.look(&seen, half_s, due, hopeless)?;
+            self.look(&seen, 0.5 * step_s, due, hopeless)?;
         } else if machine.layout.driveline.is_empty() {
             // Who remembers nothing is never exhausted.
         } else if let Some(reason) = machine.exhausted_in_the_middle(instant.demand, instant.delivery) {
@@ -130,28 +200,6 @@ impl Running<'_> {
 }
 
 impl Machine<'_> {
-    /// The balance in the middle of a step to the speed `to_m_s`, once the driveline has decided.
-    #[allow(clippy::inline_always, reason = "as the balance: nothing is put together that nobody looks at")]
-    #[inline(always)]
-    fn at_middle(&mut self, step_s: f64, to_m_s: f64, control: &impl Control) -> Instant {
-        let own = FIRST_STATE + self.layout.driveline.start..FIRST_STATE + self.layout.driveline.end;
-        if own.is_empty() {
-            return self.ask_middle::<false>(step_s, to_m_s, control);
-        }
-        self.scratch.deciding.before(&self.y[own.clone()], 0.5 * step_s);
-        let instant = self.ask_middle::<true>(step_s, to_m_s, control);
-        let deciding = &self.scratch.deciding;
-        if deciding.done {
-            self.y[own.clone()].copy_from_slice(&deciding.begin);
-            if deciding.changed {
-                self.stage[own].copy_from_slice(&deciding.middle);
-            }
-            return instant;
-        }
-        // What is asked hangs on what is given, so that has to be known first.
-        if self.decide(&instant) { self.ask_middle::<false>(step_s, to_m_s, control) } else { instant }
-    }
-
     /// Puts together where it comes to at the end of the step, for [`Machine::pass`].
     #[allow(clippy::inline_always, reason = "as the balance")]
     #[inline(always)]
@@ -168,29 +216,27 @@ impl Machine<'_> {
         self.start[SPEED] = to_m_s;
     }
 
-    /// States in the middle are foreseen with the rates of the step before.
-    #[allow(clippy::inline_always, reason = "as the balance")]
+    /// The balance in the middle of a step to the speed `to_m_s`. States there are foreseen with the rates of the step before.
+    #[allow(clippy::inline_always, reason = "as the balance: nothing is put together that nobody looks at")]
     #[inline(always)]
-    fn ask_middle<const DECIDES: bool>(
+    fn ask_middle<const DECIDES: bool, const WHOLE: bool>(
         &mut self,
         step_s: f64,
         to_m_s: f64,
         control: &impl Control,
     ) -> Instant {
         let half_s = 0.5 * step_s;
-        let states = FIRST_STATE..FIRST_STATE + self.layout.states.len();
-        let mut y = std::mem::take(&mut self.stage);
-        let mut slope = std::mem::take(&mut self.slopes[0]);
-        let foreseen = y[states.clone()].iter_mut();
-        for ((value, start), rate) in foreseen.zip(&self.y[states.clone()]).zip(&slope[states]) {
+        let Self { model, layout, slots, scratch, y, stage, slopes: [slope, ..], .. } = self;
+        let states = FIRST_STATE..FIRST_STATE + layout.states.len();
+        let foreseen = stage[states.clone()].iter_mut();
+        for ((value, start), rate) in foreseen.zip(&y[states.clone()]).zip(&slope[states]) {
             *value = start + half_s * rate;
         }
-        let middle_m_s = 0.5 * (self.y[SPEED] + to_m_s);
-        y[POSITION] = self.y[POSITION] + 0.5 * half_s * (self.y[SPEED] + middle_m_s);
-        y[SPEED] = middle_m_s;
-        let instant = self.derive::<DECIDES>(self.time_s + half_s, &y, sign(middle_m_s), control, &mut slope);
-        (self.stage, self.slopes[0]) = (y, slope);
-        instant
+        let middle_m_s = 0.5 * (y[SPEED] + to_m_s);
+        stage[POSITION] = y[POSITION] + 0.5 * half_s * (y[SPEED] + middle_m_s);
+        stage[SPEED] = middle_m_s;
+        let at = (self.time_s + half_s, sign(middle_m_s));
+        derive::<DECIDES, WHOLE>((model, layout, slots, scratch), at, stage, control, slope)
     }
 
     /// Whether anybody but the driveline may stop it, or looks at what it does.

@@ -70,11 +70,9 @@ pub(crate) enum Driver {
     Pi(Pi),
 }
 
-impl Driver {
+impl Pi {
     /// What the driver does on a piece of the reference; `memory` is the place of the driver's state among all states.
-    #[allow(clippy::inline_always, reason = "see the balance")]
-    #[inline(always)]
-    pub fn follow(
+    pub(crate) fn follow(
         &self,
         reference: &Reference,
         piece: usize,
@@ -82,18 +80,13 @@ impl Driver {
         at: &Moment,
         given: Given,
     ) -> (Command, Given) {
-        let (wanted, rate) = reference.on(piece, at.time_s);
-        match self {
-            Self::Knowing(gain) => (Command::Accelerate(rate + gain * (wanted - at.speed_m_s)), given),
-            Self::Pi(pi) => {
-                let ahead = reference.speed_m_s(at.time_s + pi.preview_s);
-                let gathered = memory.map_or(0.0, |index| at.states[index]);
-                let integral = pi.integral_per_s2 * gathered;
-                let error = wanted - at.speed_m_s;
-                let full = integral.abs() >= pi.integral_limit_m_s2 && integral * error > 0.0;
-                let given = Given { driver_rate: if full { 0.0 } else { error }, ..given };
-                (Command::Push(pi.gain_per_s * (ahead - at.speed_m_s) + integral), given)
-            }
-        }
+        let (wanted, _) = reference.on(piece, at.time_s);
+        let ahead = reference.speed_m_s(at.time_s + self.preview_s);
+        let gathered = memory.map_or(0.0, |index| at.states[index]);
+        let integral = self.integral_per_s2 * gathered;
+        let error = wanted - at.speed_m_s;
+        let full = integral.abs() >= self.integral_limit_m_s2 && integral * error > 0.0;
+        let given = Given { driver_rate: if full { 0.0 } else { error }, ..given };
+        (Command::Push(self.gain_per_s * (ahead - at.speed_m_s) + integral), given)
     }
 }

@@ -75,7 +75,17 @@ impl Model {
             more_n - lost_n(delivery.force_n) + lost_n(wanted_n)
         });
         let driving_n = delivery.force_n + free_n;
-        let resisting_n = held_n + lost_n(delivery.force_n) + brake_n;
+        let held_n = held_n + lost_n(delivery.force_n);
+        let (brake_n, locked) = if self.vehicle.brake_friction == f64::INFINITY {
+            (brake_n, false)
+        } else {
+            // What the drive brakes and what resists the wheels is held by the same ground.
+            let carried_n = situation.mass_kg * self.gravity_m_s2 * situation.place.cos_slope();
+            let overrun_n = (-asked.way() * delivery.force_n).max(0.0);
+            let most_n = self.vehicle.brake_friction * carried_n - overrun_n - ground_n;
+            asked.held_by_ground(brake_n, most_n, driving_n, held_n)
+        };
+        let resisting_n = held_n + brake_n;
         let (way, acceleration_m_s2) = asked.moves(driving_n, resisting_n);
         Rolled {
             demand,
@@ -87,6 +97,7 @@ impl Model {
             traction_n: delivery.force_n,
             slip: 0.0,
             rolling_m_s: speed_m_s,
+            locked,
         }
     }
 

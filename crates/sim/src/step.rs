@@ -231,7 +231,7 @@ impl<'a> Machine<'a> {
         let y = std::mem::take(&mut self.y);
         let mut slope = std::mem::take(&mut self.slopes[0]);
         let direction = sign(y[SPEED]);
-        let instant = self.derive::<false>(self.time_s, &y, direction, control, &mut slope);
+        let instant = self.derive(self.time_s, &y, direction, control, &mut slope);
         self.y = y;
         self.slopes[0] = slope;
         if self.first_kinetic_j.is_none() {
@@ -258,7 +258,7 @@ impl<'a> Machine<'a> {
 
     #[allow(clippy::inline_always, reason = "see the balance")]
     #[inline(always)]
-    pub(crate) fn derive<const DECIDES: bool>(
+    pub(crate) fn derive(
         &mut self,
         time_s: f64,
         y: &[f64],
@@ -266,30 +266,8 @@ impl<'a> Machine<'a> {
         control: &impl Control,
         slope: &mut [f64],
     ) -> Instant {
-        let states = self.layout.states.len();
-        let (position_m, speed_m_s) = (y[POSITION], y[SPEED]);
-        let moment = Moment { time_s, position_m, speed_m_s, states: &y[FIRST_STATE..FIRST_STATE + states] };
-        let (command, given) = control.at(&moment);
-        let (motion, rest) = slope.split_at_mut(FIRST_STATE);
-        let (rates, powers) = rest.split_at_mut(states);
-        if let Some(driver) = self.layout.driver {
-            rates[driver] = given.driver_rate;
-        }
-        let point = Point { time_s, position_m, speed_m_s, direction };
-        let instant = self.model.balance::<DECIDES>(
-            point,
-            command,
-            &given,
-            &self.layout,
-            &self.slots,
-            moment.states,
-            rates,
-            powers,
-            &mut self.scratch,
-        );
-        motion[POSITION] = speed_m_s;
-        motion[SPEED] = instant.acceleration_m_s2;
-        instant
+        let Self { model, layout, slots, scratch, .. } = self;
+        derive::<false, false>((model, layout, slots, scratch), (time_s, direction), y, control, slope)
     }
 
     /// Steps from the instant that [`Machine::instant`] found, by `step_s` or to the first time at which `event` falls
@@ -403,7 +381,7 @@ impl<'a> Machine<'a> {
             for ((value, start), before) in y.iter_mut().zip(&self.start).zip(&self.slopes[stage - 1]) {
                 *value = start + lead * before;
             }
-            let instant = self.derive::<false>(self.time_s + lead, &y, direction, control, &mut slope);
+            let instant = self.derive(self.time_s + lead, &y, direction, control, &mut slope);
             self.stage_masses_kg[stage - 1] = instant.effective_mass_kg;
             self.stage_speeds_m_s[stage - 1] = y[SPEED];
             self.stage = y;
@@ -466,6 +444,42 @@ impl<'a> Machine<'a> {
         }
         step
     }
+}
+
+/// The balance of a model where `y` says it stands; writes the rates of `y`. `WHOLE` vehicles are known to roll as a whole.
+#[allow(clippy::inline_always, reason = "see the balance")]
+#[inline(always)]
+pub(crate) fn derive<const DECIDES: bool, const WHOLE: bool>(
+    (model, layout, slots, scratch): (&Model, &Layout, &Slots, &mut Scratch),
+    (time_s, direction): (f64, f64),
+    y: &[f64],
+    control: &impl Control,
+    slope: &mut [f64],
+) -> Instant {
+    let states = layout.states.len();
+    let (position_m, speed_m_s) = (y[POSITION], y[SPEED]);
+    let moment = Moment { time_s, position_m, speed_m_s, states: &y[FIRST_STATE..FIRST_STATE + states] };
+    let (command, given) = control.at(&moment);
+    let (motion, rest) = slope.split_at_mut(FIRST_STATE);
+    let (rates, powers) = rest.split_at_mut(states);
+    if let Some(driver) = layout.driver {
+        rates[driver] = given.driver_rate;
+    }
+    let point = Point { time_s, position_m, speed_m_s, direction };
+    let instant = model.balance::<DECIDES, WHOLE>(
+        point,
+        command,
+        &given,
+        layout,
+        slots,
+        moment.states,
+        rates,
+        powers,
+        scratch,
+    );
+    motion[POSITION] = speed_m_s;
+    motion[SPEED] = instant.acceleration_m_s2;
+    instant
 }
 
 /// Below this a speed is the rounding of a located stop.

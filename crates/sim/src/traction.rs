@@ -129,7 +129,8 @@ impl Model {
             self.govern(&situation, asked.command, asked.given, asked.layout, asked.states, rates);
         let (delivery, slip) = self.given(stance, asked, sums, rates, (&wanted, &mut demand));
         let grip = if stance.firm { stance.roll(asked.way() * delivery.force_n) } else { stance.grip(slip) };
-        let rolled = moved(asked, sums, &wanted, &grip, (delivery, demand, slip));
+        let friction = self.vehicle.brake_friction;
+        let rolled = moved(asked, sums, &wanted, &grip, (delivery, demand, slip), (stance, friction));
         // The ground is what falls short where the driveline gives all that the ground could take.
         let short = !wanted.root.reached && wanted.root.at > 0.0 && delivery.force_n == demand.force_n;
         let stuck = short.then_some(Stuck::Slip { slip, most_n: grip.gross_n });
@@ -271,6 +272,7 @@ fn moved(
     wanted: &Wanted,
     grip: &Grip,
     (delivery, demand, slip): (Delivery, Demand, f64),
+    (stance, friction): (&mut Stance, f64),
 ) -> Rolled {
     let way = asked.way();
     let force_n = way * delivery.force_n;
@@ -287,8 +289,18 @@ fn moved(
         if served { 0.0 } else { more_n }
     });
     let driving_n = way * traction_n + asked.free_n;
-    let resisting_n = ground_n + sums.resistance_n + sums.drawbar_n + lost_n(force_n) + brake_n;
-    let (way, acceleration_m_s2) = asked.moves(driving_n, resisting_n);
+    let held_n = ground_n + sums.resistance_n + sums.drawbar_n + lost_n(force_n);
+    let (brake_n, locked) = if brake_n > 0.0 {
+        // Driven wheels that are braked too have the sum of both from the ground.
+        let most_n = stance.locked_n(friction) + traction_n;
+        asked.held_by_ground(brake_n, most_n, driving_n, held_n)
+    } else {
+        (brake_n, false)
+    };
+    if locked {
+        stance.lock(friction);
+    }
+    let (way, acceleration_m_s2) = asked.moves(driving_n, held_n + brake_n);
     Rolled {
         demand,
         delivery,
@@ -299,5 +311,6 @@ fn moved(
         traction_n: asked.way() * traction_n,
         slip,
         rolling_m_s: asked.situation.speed_m_s / (1.0 - slip),
+        locked,
     }
 }

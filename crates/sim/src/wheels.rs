@@ -6,8 +6,12 @@
 //! F v / (1 − s) = v Σ G_i + slip            power: what slip takes is what does not become motion
 //!
 //! Source: Renius, *Fundamentals of Tractor Design* (2020), chapter 3, for driven axles at one speed; ASABE S296 for the
-//! terms. Quasi-steady: traction follows slip at once. A wheel that is not driven turns without torque. Service brakes
-//! act on the vehicle without making wheels skid. Loads and acceleration depend on each other, and are solved together.
+//! terms. Quasi-steady: traction follows slip at once. A wheel that is not driven turns without torque. Loads and
+//! acceleration depend on each other, and are solved together.
+//!
+//! B ≤ Σ_i min(−G_i(s → −1), μ W_i)           what service brakes find in the ground: beyond it every wheel slides
+//!
+//! Service brakes act on all wheels, and make none slip until all lock; what sliding takes is slip. There is no anti-lock.
 
 use crate::axles::Axles;
 use crate::root::rising;
@@ -79,6 +83,8 @@ pub(crate) struct Grip {
 
 /// First step of the search for slip where nothing is known of it.
 pub(crate) const FIRST_STEP: f64 = 0.02;
+/// Slip at which soils are asked what a wheel finds that a brake holds: they speak of slips above −1.
+const LOCKED: f64 = -0.999;
 /// Forces are met to this share of the weight.
 pub(crate) const TOLERANCE: f64 = 1e-13;
 
@@ -200,6 +206,31 @@ impl Stance<'_> {
             grip.resisting_n_m += resistance_n * axle.tyre.loaded_radius_m(load_n / wheels);
         }
         grip
+    }
+
+    /// What the ground holds the locked wheels of an axle back with [N]; infinite where neither soil nor `friction` says.
+    fn locked_of_n(&self, index: usize, friction: f64) -> f64 {
+        let load_n = self.states[index].load_n.max(0.0);
+        let wheels = f64::from(self.axles.list()[index].wheels);
+        // On ground that knows no slip, friction is all that there is, and what resists is a part of it.
+        let of_friction_n = if friction == f64::INFINITY { friction } else { friction * load_n };
+        match self.footing(index, LOCKED) {
+            Some(footing) => (-wheels * footing.gross_traction_n).max(0.0).min(of_friction_n),
+            None => of_friction_n - self.states[index].resistance_n,
+        }
+    }
+
+    /// The same for all axles together [N].
+    pub fn locked_n(&self, friction: f64) -> f64 {
+        (0..self.states.len()).map(|index| self.locked_of_n(index, friction)).sum()
+    }
+
+    /// Writes down that every wheel slides.
+    pub fn lock(&mut self, friction: f64) {
+        for index in 0..self.states.len() {
+            self.states[index].traction_n = -self.locked_of_n(index, friction);
+            self.states[index].slip = -1.0;
+        }
     }
 
     /// The first axle that is not carried, or that carries nothing.

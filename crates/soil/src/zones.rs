@@ -66,8 +66,13 @@ impl Layout for Areas {
             if area.corners.len() < 3 {
                 return Err(refuse(format!("{} corners", area.corners.len()), "three or more"));
             }
-            if let Some(odd) = area.corners.iter().find(|c| !c.east_m.is_finite() || !c.north_m.is_finite()) {
-                return Err(refuse(format!("({}, {})", odd.east_m, odd.north_m), "finite numbers"));
+            for (corner, Corner { east_m, north_m }) in area.corners.iter().enumerate() {
+                for (name, value) in [("east_m", east_m), ("north_m", north_m)] {
+                    if !value.is_finite() {
+                        let parameter = format!("areas.{index}.corners.{corner}.{name}");
+                        return Err(Refusal { parameter, ..refuse(value.to_string(), "a finite number") });
+                    }
+                }
             }
             if area.size_m2() == 0.0 {
                 return Err(refuse("corners in one line".to_owned(), "an area"));

@@ -81,6 +81,7 @@ fn model(engine: bool, effects: &[(&str, &str)]) -> Model {
             mass_kg: if engine { 13_000.0 } else { 1300.0 },
             rotating_mass_kg: 20.0,
             resistance: Resistance::Drag { area_m2: if engine { 6.0 } else { 0.7 } },
+            brake_friction: f64::INFINITY,
         },
         gravity_m_s2: 9.81,
         air: Air { density_kg_m3: 1.2, wind_speed_m_s: 0.0, wind_from_rad: 0.0, temperature_c: 5.0 },

@@ -81,6 +81,7 @@ pub fn model(terrain: Box<dyn Terrain>, soil: Box<dyn Soil>) -> Model {
             mass_kg: MASS_KG,
             rotating_mass_kg: 900.0,
             resistance: Resistance::Drag { area_m2: 6.0 },
+            brake_friction: f64::INFINITY,
         },
         gravity_m_s2: GRAVITY,
         air: Air { density_kg_m3: 1.238, ..Air::default() },

@@ -73,7 +73,8 @@ pub fn energy_flow(through: &str, sources: &[(&str, f64)], sinks: &[(&str, f64)]
         quantity(spent, "J"),
         quantity(residual, "J")
     );
-    Plot::new("Energy flow", Sankey { axis: Axis::new("energy", "J"), flows }).words(words)
+    Plot::new("Energy flow", Sankey { axis: Axis::new("energy", "J"), flows, ..Sankey::default() })
+        .words(words)
 }
 
 #[cfg(test)]

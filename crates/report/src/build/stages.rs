@@ -54,7 +54,7 @@ pub fn staged_flow(title: &str, stages: &Stages) -> Plot {
         quantity(spent, "J"),
         quantity(small, "J")
     );
-    Plot::new(title, Sankey { axis: Axis::new("energy", "J"), flows }).words(words)
+    Plot::new(title, Sankey { axis: Axis::new("energy", "J"), flows, ..Sankey::default() }).words(words)
 }
 
 #[cfg(test)]

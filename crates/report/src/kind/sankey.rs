@@ -3,6 +3,7 @@
 use crate::draw::{Drawn, Scale};
 use crate::{Axis, ReportError, number};
 use serde_json::json;
+use std::collections::BTreeMap;
 
 /// What passes from one node to another.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +23,9 @@ pub struct Sankey {
     pub axis: Axis,
     /// The flows. They run in no circle.
     pub flows: Vec<Flow>,
+    /// Which of the colours of a page, counted from 0, a node has, so that it is the same in several plots. Those that are not named
+    /// here have the colour of their order.
+    pub colours: BTreeMap<String, usize>,
 }
 
 impl Sankey {
@@ -51,6 +55,7 @@ impl Sankey {
             "kind": "sankey",
             "axis": scale.spec(),
             "nodes": self.nodes(),
+            "colours": self.colours,
             "flows": self.flows.iter().map(|flow| {
                 json!({ "from": flow.from, "to": flow.to, "value": scale.one(flow.value) })
             }).collect::<Vec<_>>(),
@@ -100,18 +105,21 @@ mod tests {
     fn a_circle_and_a_backward_flow_are_refused() {
         let axis = Axis::new("energy", "J");
         let circle = vec![flow("x", "a", 1.0), flow("a", "b", 1.0), flow("b", "a", 1.0), flow("b", "y", 1.0)];
-        let error = Sankey { axis: axis.clone(), flows: circle }.draw("energy").unwrap_err();
+        let error =
+            Sankey { axis: axis.clone(), flows: circle, ..Sankey::default() }.draw("energy").unwrap_err();
         assert_eq!(error.to_string(), "plot `energy`: the flows through `a` run in a circle");
         for value in [-1.0, 0.0, f64::NAN] {
             let flows = vec![flow("a", "b", value)];
-            assert!(Sankey { axis: axis.clone(), flows }.draw("energy").is_err());
+            assert!(Sankey { axis: axis.clone(), flows, ..Sankey::default() }.draw("energy").is_err());
         }
     }
 
     #[test]
     fn each_flow_is_told_in_words() {
         let flows = vec![flow("kinetic", "soil", 448_100.0), flow("kinetic", "air", 3_900.0)];
-        let drawn = Sankey { axis: Axis::new("energy", "J"), flows }.draw("energy").unwrap();
+        let colours = BTreeMap::from([("soil".to_owned(), 3)]);
+        let drawn = Sankey { axis: Axis::new("energy", "J"), flows, colours }.draw("energy").unwrap();
+        assert_eq!(drawn.spec["colours"], json!({ "soil": 3 }));
         assert_eq!(drawn.alt, "Flows of energy: kinetic to soil 448.1\u{a0}kJ; kinetic to air 3900\u{a0}J.");
     }
 }

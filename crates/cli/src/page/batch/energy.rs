@@ -5,8 +5,9 @@ use crate::failure::Failure;
 use headland_batch::{Cell, account_column, account_of_column};
 use headland_plugin::Registry;
 use headland_report::build::{Stages, staged_flow};
-use headland_report::{Axis, Bar, Bars, Plot, Section};
+use headland_report::{Axis, Bar, Bars, Kind, Plot, Section};
 use headland_scenario::Scenario;
+use std::collections::BTreeMap;
 
 /// Accounts that take from shafts and wires.
 const TAKEN: [&str; 3] = ["power take off", "hydraulics", "auxiliary"];
@@ -126,7 +127,19 @@ impl Content<'_> {
             of.push(entry);
         }
         let place = self.place(cell.cycle, cell.ground);
-        Ok(staged_flow(&format!("{}: {place}", self.variant(cell.variant)), &stages))
+        let mut plot = staged_flow(&format!("{}: {place}", self.variant(cell.variant)), &stages);
+        if let Kind::Sankey(sankey) = &mut plot.kind {
+            sankey.colours = self.colours(cell);
+        }
+        Ok(plot)
+    }
+
+    /// The colours of the accounts as the bars have them; what the stores gave is as grey as the rest.
+    fn colours(&self, cell: &Cell) -> BTreeMap<String, usize> {
+        let names = self.names();
+        let colour = |name: &str| names.iter().position(|other| *other == name).unwrap_or(names.len());
+        let plain = |name: &str| name.strip_prefix("from ").unwrap_or(name).to_owned();
+        cell.accounts.iter().map(|(name, _)| (plain(name), colour(name))).collect()
     }
 }
 

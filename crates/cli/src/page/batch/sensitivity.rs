@@ -38,14 +38,29 @@ impl Content<'_> {
                 if effects.is_empty() || plots == PLOTS {
                     continue;
                 }
+                let idle = self.idle(variant, index, &columns);
                 effects.sort_by(|one, other| size(other, index).total_cmp(&size(one, index)));
                 effects.truncate(SHOWN);
                 let title = format!("{}: {}", self.axis(index).label, self.variant(variant));
-                section = section.with(Plot::new(super::capital(&title), tornado(&effects, index, &columns)));
+                let plot = Plot::new(super::capital(&title), tornado(&effects, index, &columns));
+                section = section.with(if idle.is_empty() { plot } else { plot.words(idle) });
                 plots += 1;
             }
         }
         (plots > 0).then_some(section)
+    }
+
+    /// What was moved and changes so little that it is not drawn.
+    fn idle(&self, variant: usize, index: usize, columns: &[&str]) -> String {
+        let effects = self.summary.effects.iter();
+        let idle: Vec<String> = effects
+            .filter(|effect| effect.variant == variant && size(effect, index) <= LEAST)
+            .map(|effect| label(effect, columns))
+            .collect();
+        if idle.is_empty() {
+            return String::new();
+        }
+        format!("Less than {} %: {}.", 100.0 * LEAST, idle.join("; "))
     }
 }
 
@@ -54,21 +69,23 @@ fn size(effect: &Effect, index: usize) -> f64 {
     low.abs().max(high.abs())
 }
 
+/// The parameter that was moved, and between which values.
+fn label(effect: &Effect, columns: &[&str]) -> String {
+    let path = columns.get(effect.parameter).copied().unwrap_or("");
+    let mut ends = path.rsplit('.');
+    let name = ends.next().unwrap_or(path);
+    let owner = ends.next().map_or(String::new(), |owner| format!("{owner}."));
+    format!("{owner}{name}: {} to {}", short(effect.ends.0), short(effect.ends.1))
+}
+
 fn tornado(effects: &[&Effect], index: usize, columns: &[&str]) -> Bars {
-    let label = |effect: &&Effect| {
-        let path = columns.get(effect.parameter).copied().unwrap_or("");
-        let mut ends = path.rsplit('.');
-        let name = ends.next().unwrap_or(path);
-        let owner = ends.next().map_or(String::new(), |owner| format!("{owner}."));
-        format!("{owner}{name}: {} to {}", short(effect.ends.0), short(effect.ends.1))
-    };
     let side = |name: &str, of: fn(&(f64, f64)) -> f64| Bar {
         name: name.to_owned(),
         values: effects.iter().map(|effect| 100.0 * of(&effect.changes[index])).collect(),
         error: None,
     };
     Bars {
-        categories: effects.iter().map(label).collect(),
+        categories: effects.iter().map(|effect| label(effect, columns)).collect(),
         axis: Axis::new("change", "%"),
         bars: vec![side("at the least value", |one| one.0), side("at the greatest value", |one| one.1)],
         stacked: true,

@@ -67,6 +67,16 @@ impl Refined {
         self.free.iter().map(|free| free.value).collect()
     }
 
+    /// Takes everything back: no cause is left, and the free parameters are as they were known before.
+    pub fn learn_nothing(&mut self, case: &Case) {
+        self.causes.clear();
+        for (free, known) in self.free.iter_mut().zip(&case.study.parameters) {
+            let half = known.sd.map_or(f64::INFINITY, |sd| HALF_95 * sd);
+            free.value = free.prior;
+            free.ci95 = [(free.prior - half).max(known.bounds.0), (free.prior + half).min(known.bounds.1)];
+        }
+    }
+
     /// The faults of sensors, with their sizes.
     pub fn artefacts(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let artefacts = self.causes.iter().filter(|cured| cured.cause.class == Class::Artefact);

@@ -107,7 +107,7 @@ pub fn proven(
     if best.harms() {
         let claimed: Vec<&str> = best.refined.causes.iter().map(|cured| cured.cause.words).collect();
         best.withheld = Some(harmful(claimed));
-        best.refined.causes.clear();
+        best.refined.learn_nothing(case);
         best.proof = prove(case, system, &best.refined, by)?;
     }
     if withdrawn && best.refined.causes.is_empty() && best.withheld.is_none() && faults.is_empty() {

@@ -202,6 +202,11 @@ impl Spin {
             let way_m = 0.5 * step_s * (before_m_s + shaft.speed_m_s);
             turned.driven_m += shaft.share * way_m;
             turned.brakes_j += mass_kg * (free_m_s - shaft.speed_m_s) / step_s * way_m;
+            if before_m_s * way < 0.0 {
+                // Told that its wheels stand, the driveline books nothing: what it holds them with is heat, as in a clutch.
+                turned.brakes_j +=
+                    (mass_kg * (rolling_m_s - free_m_s) / step_s - shaft.share * pushed_n) * way_m;
+            }
         }
         for one in &mut self.differences {
             let apart_n = gross_n(one.left) - gross_n(one.right);

@@ -52,6 +52,10 @@ pub(crate) struct Wheel<'a> {
     pub sinkage_m: f64,
     /// How fast it deepens [m/s].
     pub sinking_m_s: f64,
+    /// On which it rolls, as it stands on level ground [m].
+    pub radius_m: f64,
+    /// What keeps it turning with the body as that tilts about its axle, by the last step: a force at its rim [N].
+    pub tilting_n: f64,
     /// What it last met.
     pub touch: Touch,
     /// What it last felt.

@@ -1,6 +1,7 @@
 //! How the viewer lays everything out: the vehicle on the left, what is to be read on the right.
 
 use crate::entity::{self, Who};
+use crate::flow;
 use crate::groups::{Group, Rank};
 use crate::lanes::Lane;
 use crate::layout::{LEGEND, Layout, Node};
@@ -23,13 +24,16 @@ pub(crate) fn messages(
     let space = layout.space(scene, lanes)?;
     let text = layout.layout.view("TextDocument", "About", &[entity::summary()], &[])?;
     let left = layout.layout.split(ContainerKind::Vertical, "", &[space, text], &[5.0, 1.0])?;
-    let right = layout.plots(groups, lanes)?;
+    let right = layout.plots(scene, groups, lanes)?;
     let root = layout.layout.split(ContainerKind::Horizontal, "", &[left, right], &[6.0, 5.0])?;
     layout.layout.finish(&root)
 }
 
 /// Behind everything in space: dark enough for light labels.
 const SKY: [u8; 3] = [34, 44, 56];
+
+/// What a plot needs beside the lines of its legend, in such lines: its title, its times and some air.
+const FRAME_LINES: f32 = 2.4;
 
 /// First and last time of all runs [s].
 fn times_s(lanes: &[Lane]) -> [f64; 2] {
@@ -87,7 +91,7 @@ impl Scenic {
     }
 
     /// The plots of one run, or a tab for each run.
-    fn plots(&mut self, groups: &[Group], lanes: &[Lane]) -> Result<Node, ViewError> {
+    fn plots(&mut self, scene: &Scene, groups: &[Group], lanes: &[Lane]) -> Result<Node, ViewError> {
         let mut tabs = Vec::with_capacity(lanes.len() + 1);
         if let [_, _, ..] = lanes {
             let overview = self.overview(lanes)?;
@@ -95,7 +99,7 @@ impl Scenic {
         }
         for lane in lanes {
             let name = if lanes.len() > 1 { lane.run.id.as_str() } else { "" };
-            let column = self.column(groups, lane, name)?;
+            let column = self.column((scene, groups), lane, name)?;
             tabs.push(column);
         }
         if let [only] = tabs.as_slice() {
@@ -131,8 +135,14 @@ impl Scenic {
         self.layout.split(ContainerKind::Vertical, "All runs", &plots, &vec![1.0; plots.len()])
     }
 
-    /// Speed, its residual, forces, powers, and tabs for wheels and for the rest.
-    fn column(&mut self, groups: &[Group], lane: &Lane, name: &str) -> Result<Node, ViewError> {
+    /// Speed, its residual, forces, where the power goes, and tabs for wheels and for the rest; each as high as its legend needs,
+    /// tabs as their first one.
+    fn column(
+        &mut self,
+        (scene, groups): (&Scene, &[Group]),
+        lane: &Lane,
+        name: &str,
+    ) -> Result<Node, ViewError> {
         let id = &lane.run.id;
         let (mut parts, mut shares) = (Vec::new(), Vec::new());
         let (mut wheels, mut rest) = (Vec::new(), Vec::new());
@@ -151,32 +161,48 @@ impl Scenic {
             if lines.is_empty() {
                 continue;
             }
+            let knows = |run: Option<&headland_trace::Run>, channel: &str| {
+                usize::from(run.is_some_and(|run| run.trace.channel(channel).is_some()))
+            };
+            let drawn: usize = group
+                .channels
+                .iter()
+                .map(|channel| knows(Some(lane.run), channel) + knows(lane.recording, channel))
+                .sum();
+            let share = FRAME_LINES + drawn as f32;
             let plot = self.plot(&group.title, &lines)?;
             match group.rank {
                 Rank::Main => {}
                 Rank::Wheels => {
-                    wheels.push(plot);
+                    wheels.push((plot, share));
                     continue;
                 }
                 Rank::More => {
-                    rest.push(plot);
+                    rest.push((plot, share));
                     continue;
                 }
             }
             parts.push(plot);
-            shares.push(3.0);
+            shares.push(share);
             let compared = lane.recording.is_some_and(|recording| residual(lane.run, recording).is_some());
             if compared && group.channels.iter().any(|channel| channel == COMPARED) {
                 parts.push(
                     self.plot("Speed residual [m/s]", &[entity::channel(id, COMPARED, Who::Residual)])?,
                 );
-                shares.push(2.0);
+                shares.push(FRAME_LINES + 1.0);
             }
         }
+        let flows: Vec<EntityPath> =
+            flow::flows(scene, groups, lane.run).iter().map(|flow| entity::flow(id, &flow.name)).collect();
+        if !flows.is_empty() {
+            parts.push(self.plot(flow::TITLE, &flows)?);
+            shares.push(FRAME_LINES + flows.len() as f32);
+        }
         for (title, tabs) in [("Wheels", wheels), ("More", rest)] {
+            let (tabs, needed): (Vec<Node>, Vec<f32>) = tabs.into_iter().unzip();
             if !tabs.is_empty() {
                 parts.push(self.layout.split(ContainerKind::Tabs, title, &tabs, &[])?);
-                shares.push(3.0);
+                shares.push(needed[0]);
             }
         }
         self.layout.split(ContainerKind::Vertical, name, &parts, &shares)

@@ -46,6 +46,11 @@ pub(crate) fn channel(run: &str, channel: &str, who: Who) -> EntityPath {
     entity(&["channels", run, channel, who.name()])
 }
 
+/// A line of where a run's power goes.
+pub(crate) fn flow(run: &str, name: &str) -> EntityPath {
+    entity(&["flow", run, name])
+}
+
 /// A channel of a run beside the same of the others.
 pub(crate) fn beside(channel: &str, run: &str) -> EntityPath {
     entity(&["beside", channel, run])

@@ -5,7 +5,7 @@ use crate::lanes::{Lane, lanes};
 use crate::recorder::{Recorder, encode};
 use crate::summary::Scales;
 use crate::{
-    Scene, ViewError, balance, blueprint, forces, groups, plots, ruts, summary, surroundings, trailer,
+    Scene, ViewError, balance, blueprint, flow, forces, groups, plots, ruts, summary, surroundings, trailer,
     vehicle, wheels,
 };
 use rerun::external::re_build_info::CrateVersion;
@@ -106,6 +106,7 @@ pub(crate) fn messages(scene: &Scene) -> Result<Vec<LogMsg>, ViewError> {
         }
         forces::draw(&to, scene, run, (newton_per_m, labelled))?;
         plots::draw(&to, scene, &groups, lane)?;
+        flow::draw(&to, scene, &groups, lane)?;
         if scene.runs.len() > 1 {
             plots::beside(&to, lane)?;
         }

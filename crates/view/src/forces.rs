@@ -6,7 +6,7 @@ use crate::mesh::{Point, single};
 use crate::recorder::Recorder;
 use crate::scene::{Axis, Body, ForceArrow, Scene};
 use crate::strip::round_up;
-use crate::thin::{MOST, thin};
+use crate::thin::{MOST, Thinned, thin};
 use crate::{ViewError, groups};
 use headland_trace::Run;
 use rerun::{Arrows3D, Color, Transform3D};
@@ -15,6 +15,8 @@ use rerun::{Arrows3D, Color, Transform3D};
 const LONGEST: f64 = 1.2;
 /// A force below this share of the largest one is drawn without an arrow.
 const LEAST: f64 = 0.002;
+/// A smaller force is told as 0 N.
+const LEAST_TOLD_N: f64 = 0.5;
 
 /// How many newtons a metre of arrow stands for: a round number, the same for all arrows of a scene.
 pub(crate) fn newton_per_m(scene: &Scene) -> f64 {
@@ -54,6 +56,18 @@ fn arrow(body: &Body, axis: Axis, (index, count): (usize, usize), length_m: f64)
     (origin, vector)
 }
 
+/// Leaves out a force that would be told as 0 N: it is no force, and its label would hide others.
+fn told(all: Thinned) -> Thinned {
+    let mut left = Thinned { times_s: all.times_s, ..Thinned::default() };
+    let mut values = all.values.into_iter();
+    for length in all.lengths {
+        let force = values.by_ref().take(length).find(|force| force.abs() >= LEAST_TOLD_N);
+        left.lengths.push(usize::from(force.is_some()));
+        left.values.extend(force);
+    }
+    left
+}
+
 /// Draws the forces of a run at its vehicle, with their names and values if they are to be labelled.
 pub(crate) fn draw(
     to: &Recorder,
@@ -72,7 +86,7 @@ pub(crate) fn draw(
         let place = (rank, level.max(1));
         rank += usize::from(*axis != Axis::Up);
         let Some(values) = run.trace.get(channel) else { continue };
-        let thinned = thin(run.trace.time_s(), values, MOST);
+        let thinned = told(thin(run.trace.time_s(), values, MOST));
         let arrows: Vec<(Point, Point)> = thinned
             .values
             .iter()
@@ -135,6 +149,13 @@ mod tests {
         assert_eq!((roof[2], up[2]), (BODY.height_m, 2.0));
         let (above, down) = arrow(&BODY, Axis::Up, (0, 1), -2.0);
         assert_eq!(above[2] + down[2], BODY.height_m);
+    }
+
+    #[test]
+    fn a_force_of_nothing_has_neither_arrow_nor_label() {
+        let thinned = told(thin(&[0.0, 1.0, 2.0, 3.0, 4.0], &[3.0, 0.4, -0.2, f64::NAN, -7.0], MOST));
+        assert_eq!((thinned.lengths, thinned.values), (vec![1, 0, 0, 0, 1], vec![3.0, -7.0]));
+        assert_eq!(thinned.times_s, [0.0, 1.0, 2.0, 3.0, 4.0]);
     }
 
     #[test]

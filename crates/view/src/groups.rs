@@ -43,7 +43,8 @@ const NOUNS: [(&str, &str); 10] = [
     ("J", "Energy"),
     ("°C", "Temperature"),
 ];
-const MAIN: usize = 3;
+/// Powers stand among the rest: a plot of its own says where they go.
+const MAIN: usize = 2;
 
 fn unit(channel: &str) -> String {
     unit_of_name(channel).map_or_else(|| "1".to_owned(), |unit| unit.symbol)
@@ -60,31 +61,32 @@ const LEANING: [&str; 2] = ["roll_rad", "pitch_rad"];
 /// All channels of all runs: speed, forces, powers, then the rest. Where single wheels are known, sums over axles are left out.
 pub(crate) fn groups(scene: &Scene) -> Vec<Group> {
     let channels = || scene.runs.iter().chain(scene.measured).flat_map(|run| run.trace.channels());
-    let mut wheels: Vec<(&str, Vec<String>)> = Vec::new();
+    let mut wheels: Vec<((bool, &str), Vec<String>)> = Vec::new();
     for channel in channels() {
         let Some(own) = of_wheel(&channel.name).filter(|own| own.single) else { continue };
         if channel.values.iter().any(|value| value.is_finite()) {
-            put(&mut wheels, own.what, &channel.name);
+            put(&mut wheels, (of_trailer(&channel.name), own.what), &channel.name);
         }
     }
     let leaning = !wheels.is_empty();
     let apart = |name: &str| {
-        of_wheel(name).is_some_and(|own| wheels.iter().any(|(what, _)| *what == own.what))
+        of_wheel(name).is_some_and(|own| wheels.iter().any(|((_, what), _)| *what == own.what))
             || (leaning && LEANING.contains(&name))
     };
-    let mut groups = by_unit(channels().filter(|channel| !apart(&channel.name)), leaning);
+    let paired = |name: &str| scene.measured.iter().any(|run| run.trace.channel(name).is_some());
+    let mut groups = by_unit(channels().filter(|channel| !apart(&channel.name)), &paired);
     let names: Vec<String> = LEANING.map(str::to_owned).into();
     if leaning && channels().any(|channel| LEANING.contains(&channel.name.as_str())) {
         let place = groups.iter().take_while(|group| group.rank == Rank::Main).count();
         groups.insert(
             place,
-            Group { title: "Roll and pitch [rad]".to_owned(), rank: Rank::Main, channels: names },
+            Group { title: "Roll and pitch [rad]".to_owned(), rank: Rank::More, channels: names },
         );
     }
-    groups.extend(wheels.into_iter().map(|(what, channels)| {
-        let title = format!("{} [{}]", capital(&words(what)), unit(what));
-        Group { title, rank: Rank::Wheels, channels }
-    }));
+    for ((towed, what), channels) in wheels {
+        let noun = if towed { format!("trailer {}", words(what)) } else { words(what) };
+        spread(&mut groups, (capital(&noun), &unit(what)), Rank::Wheels, channels, &paired);
+    }
     groups
 }
 
@@ -99,31 +101,65 @@ fn put<K: PartialEq>(groups: &mut Vec<(K, Vec<String>)>, key: K, name: &str) {
     }
 }
 
-/// Channels of one unit; powers give their place to what a rigid body has beside.
-fn by_unit<'a>(channels: impl Iterator<Item = &'a Channel>, leaning: bool) -> Vec<Group> {
-    let mut units: Vec<(String, Vec<String>)> = Vec::new();
+/// Whether a channel is of a trailer or of what couples it.
+fn of_trailer(channel: &str) -> bool {
+    ["trailer_", "coupling_"].iter().any(|begin| channel.starts_with(begin))
+}
+
+/// Adds a plot of some channels, or as many as keep their lines few: no colour comes twice in one, and its legend is seen whole.
+fn spread(
+    groups: &mut Vec<Group>,
+    (noun, unit): (String, &str),
+    rank: Rank,
+    channels: Vec<String>,
+    paired: &impl Fn(&str) -> bool,
+) {
+    let mut plots: Vec<(usize, Vec<String>)> = Vec::new();
     for channel in channels {
-        if channel.values.iter().any(|value| value.is_finite()) {
-            put(&mut units, unit(&channel.name), &channel.name);
+        let lines = 1 + usize::from(paired(&channel));
+        match plots.last_mut().filter(|(drawn, _)| drawn + lines <= SERIES.len()) {
+            Some((drawn, plot)) => {
+                *drawn += lines;
+                plot.push(channel);
+            }
+            None => plots.push((lines, vec![channel])),
         }
     }
-    let main = MAIN - usize::from(leaning);
+    groups.extend(plots.into_iter().enumerate().map(|(index, (_, channels))| match index {
+        0 => Group { title: format!("{noun} [{unit}]"), rank, channels },
+        again => {
+            let rank = if rank == Rank::Main { Rank::More } else { rank };
+            Group { title: format!("{noun}, {} [{unit}]", again + 1), rank, channels }
+        }
+    }));
+}
+
+/// Channels of one unit.
+fn by_unit<'a>(channels: impl Iterator<Item = &'a Channel>, paired: &impl Fn(&str) -> bool) -> Vec<Group> {
+    let mut units: Vec<((bool, String), Vec<String>)> = Vec::new();
+    for channel in channels {
+        if channel.values.iter().any(|value| value.is_finite()) {
+            put(&mut units, (of_trailer(&channel.name), unit(&channel.name)), &channel.name);
+        }
+    }
     let rank = |unit: &str| NOUNS.iter().position(|(known, _)| *known == unit).unwrap_or(NOUNS.len());
-    units.sort_by_key(|(unit, _)| rank(unit));
-    units
-        .into_iter()
-        .map(|(unit, channels)| {
-            let noun = NOUNS.iter().find(|(known, _)| *known == unit).map(|(_, noun)| (*noun).to_owned());
-            let noun = match (&noun, channels.as_slice()) {
-                (Some(noun), _) => noun.clone(),
-                (None, [only]) => capital(&words(only)),
-                (None, _) if unit == "1" => "Ratios".to_owned(),
-                (None, _) => "Values".to_owned(),
-            };
-            let place = if rank(&unit) < main { Rank::Main } else { Rank::More };
-            Group { title: format!("{noun} [{unit}]"), rank: place, channels }
-        })
-        .collect()
+    units.sort_by_key(|((towed, unit), _)| (*towed, rank(unit)));
+    let mut groups = Vec::new();
+    for ((towed, unit), channels) in units {
+        let noun = NOUNS.iter().find(|(known, _)| *known == unit).map(|(_, noun)| (*noun).to_owned());
+        let noun = match (&noun, channels.as_slice()) {
+            (Some(noun), _) => noun.clone(),
+            (None, [only]) => capital(&words(only)),
+            (None, _) if unit == "1" => "Ratios".to_owned(),
+            (None, _) => "Values".to_owned(),
+        };
+        let noun = if towed { format!("Trailer: {}", noun.to_lowercase()) } else { noun };
+        let place = if rank(&unit) < MAIN && !towed { Rank::Main } else { Rank::More };
+        spread(&mut groups, (noun, &unit), place, channels, paired);
+    }
+    // What a main plot has no room for stands among the rest.
+    groups.sort_by_key(|group| group.rank != Rank::Main);
+    groups
 }
 
 fn capital(words: &str) -> String {
@@ -134,7 +170,11 @@ fn capital(words: &str) -> String {
 /// The colour of a channel, the same in every plot, run and arrow; but for the speed, which is the colour of its run.
 pub(crate) fn colour(groups: &[Group], channel: &str) -> Colour {
     let place = groups.iter().find_map(|group| {
-        group.channels.iter().filter(|known| *known != COMPARED).position(|known| known == channel)
+        let beside_speed = group.channels.iter().any(|known| known == COMPARED);
+        let place =
+            group.channels.iter().filter(|known| *known != COMPARED).position(|known| known == channel)?;
+        // The speed is orange, and its recording sky blue: beside them the first two would be taken for them.
+        Some(if beside_speed { place + 2 } else { place })
     });
     SERIES[place.unwrap_or(0) % SERIES.len()]
 }
@@ -203,7 +243,7 @@ mod tests {
         let expected = [
             ("Speed [m/s]", Rank::Main),
             ("Force [N]", Rank::Main),
-            ("Roll and pitch [rad]", Rank::Main),
+            ("Roll and pitch [rad]", Rank::More),
             ("Power [W]", Rank::More),
             ("Length [m]", Rank::More),
             ("Angle [rad]", Rank::More),
@@ -212,5 +252,38 @@ mod tests {
         ];
         assert_eq!(told, expected);
         assert_eq!(groups[6].channels, ["axle_1_left_load_n", "axle_1_right_load_n"]);
+    }
+
+    /// A plot of eight forces had two pairs of one colour, and a legend of which half was seen.
+    #[test]
+    fn no_plot_has_a_colour_twice_and_a_trailer_has_its_own() {
+        let names = ["a_n", "b_n", "c_n", "d_n", "e_n", "f_n", "g_n", "coupling_pull_n", "coupling_load_n"];
+        let wheels = ["axle_1_left_load_n", "axle_1_right_load_n", "trailer_axle_1_left_load_n"];
+        let mut trace = Trace::new(vec![0.0]).unwrap();
+        for name in names.iter().chain(&wheels) {
+            trace.push(*name, vec![1.0], Origin::Predicted).unwrap();
+        }
+        let runs = [Run { id: "r1".to_owned(), trace }];
+        let alone = groups(&crate::scene::tests::scene(&runs, &[]));
+        let told: Vec<(&str, Rank, usize)> =
+            alone.iter().map(|group| (group.title.as_str(), group.rank, group.channels.len())).collect();
+        let expected = [
+            ("Force [N]", Rank::Main, 6),
+            ("Force, 2 [N]", Rank::More, 1),
+            ("Trailer: force [N]", Rank::More, 2),
+            ("Load [N]", Rank::Wheels, 2),
+            ("Trailer load [N]", Rank::Wheels, 1),
+        ];
+        assert_eq!(told, expected);
+        for group in &alone {
+            let mut colours: Vec<Colour> =
+                group.channels.iter().map(|channel| colour(&alone, channel)).collect();
+            colours.sort_unstable();
+            colours.dedup();
+            assert_eq!(colours.len(), group.channels.len(), "{}", group.title);
+        }
+        // With a recording each channel has two lines.
+        let beside = groups(&crate::scene::tests::scene(&runs, &runs));
+        assert_eq!(beside[0].channels.len(), 3);
     }
 }

@@ -11,6 +11,7 @@ mod colour;
 mod entity;
 mod error;
 mod file;
+mod flow;
 mod forces;
 mod ground;
 mod groups;

@@ -46,6 +46,7 @@ pub(crate) fn summary(scene: &Scene, scales: &Scales, grounds: &Grounds) -> Stri
     }
     if !scene.forces.is_empty() {
         let _ = writeln!(text, "1 m of arrow is {}.", words(scales.newton_per_m));
+        text.push_str("Energy flow: what the wheels get, and what takes it.\n");
     }
     if scene.forces.iter().any(|force| force.axis == Axis::Up) {
         text.push_str("Arrows on the roof are upward forces.\n");

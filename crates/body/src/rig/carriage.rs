@@ -1,10 +1,10 @@
 //! One step of the body, and what a run sees of it.
 
-use super::contact::forces;
+use super::contact::{forces, tilt, tilted_j};
 use super::{Rig, Towed};
 use crate::accounts::Step;
 use crate::hop::{self, Bearer};
-use crate::spin::Turned;
+use crate::spin::{Spin, Turned};
 use crate::track::heading_of;
 use crate::wheel::{Felt, Touch, Wheel};
 use crate::world::State;
@@ -65,7 +65,7 @@ impl Carriage for Rig<'_> {
         let turned = self.spin.advance(
             (push.drive_n, push.way),
             push.brake_n,
-            |wheel| self.wheels[wheel].felt.gross_n,
+            |wheel| self.wheels[wheel].felt.gross_n + self.wheels[wheel].tilting_n,
             step_s,
         );
         let (ahead, hitch) = (before.ahead(), self.hitch());
@@ -95,6 +95,7 @@ impl Carriage for Rig<'_> {
         if self.hops {
             hop::follow(&mut self.wheels, (&before, &self.state), step_s);
         }
+        tilt(&mut self.wheels, &self.spin, (&before, &self.state), step_s);
         let step = Step {
             before: &before,
             after: &self.state,
@@ -134,9 +135,12 @@ impl Carriage for Rig<'_> {
     }
 
     fn kinetic_j(&self) -> f64 {
-        let towed_j =
-            self.towed.as_ref().map_or(0.0, |towed| towed.spin.kinetic_j() + hop::kinetic_j(&towed.wheels));
-        self.world.kinetic_j() + self.spin.kinetic_j() + hop::kinetic_j(&self.wheels) + towed_j
+        let turning_j = |wheels: &[Wheel], spin: &Spin, state: &State| {
+            spin.kinetic_j() + tilted_j(wheels, spin, state) + hop::kinetic_j(wheels)
+        };
+        let towed = self.towed.as_ref();
+        let towed_j = towed.map_or(0.0, |towed| turning_j(&towed.wheels, &towed.spin, &towed.state));
+        self.world.kinetic_j() + turning_j(&self.wheels, &self.spin, &self.state) + towed_j
     }
 
     fn accounts(&self) -> Vec<(&'static str, f64)> {

@@ -1,4 +1,10 @@
 //! The wheels of a body: as they are built, where they meet the ground, and what it does to the body through them.
+//!
+//! E = ½ I ω² + Σ (J Ω ω + ½ J Ω²)        a body that tilts with ω, and wheels that turn in it with Ω = w / r about the same axis
+//! I dω/dt = M − Σ J dΩ/dt                what spins a wheel up turns the body back
+//! J dΩ/dt = T − G r − J dω/dt            and what tilts the body slows the wheel in it
+//!
+//! Source: Lagrange's equations of E; I has the wheels in it. dω/dt is that of the step before.
 
 use crate::chassis::Chassis;
 use crate::ground::Ground;
@@ -50,6 +56,8 @@ pub(crate) fn wheels<'a>(
                 side: 0.0,
                 sinkage_m: 0.0,
                 sinking_m_s: 0.0,
+                radius_m: hub_m,
+                tilting_n: 0.0,
                 touch: Touch::default(),
                 felt: Felt::default(),
             });
@@ -102,8 +110,25 @@ pub(super) fn forces(wheels: &[Wheel], spin: &Spin, state: &State, way: f64) -> 
         moment += (wheel.touch.point - state.centre).cross(own);
         moment += (wheel.touch.hub() - state.centre).cross(held);
         // What spins a wheel up turns the vehicle back.
-        let inertia = spin.masses_kg[index] * wheel.touch.height_m;
+        let inertia = spin.masses_kg[index] * wheel.radius_m;
         moment -= wheel.touch.across * (inertia * spin.changes_m_s2[index]);
     }
     (force, moment)
+}
+
+/// What keeps wheels turning with a body as it tilts from `before` to `after`.
+pub(super) fn tilt(wheels: &mut [Wheel], spin: &Spin, (before, after): (&State, &State), step_s: f64) {
+    let change = (after.turning - before.turning) / step_s;
+    for (wheel, mass_kg) in wheels.iter_mut().zip(&spin.masses_kg) {
+        wheel.tilting_n = mass_kg * wheel.radius_m * wheel.touch.across.dot(change);
+    }
+}
+
+/// Kinetic energy of wheels that turn in a body that tilts, beside what each has by itself: J Ω ω [J].
+pub(super) fn tilted_j(wheels: &[Wheel], spin: &Spin, state: &State) -> f64 {
+    let own = |(index, wheel): (usize, &Wheel)| {
+        let tilting_m_s = wheel.radius_m * wheel.touch.across.dot(state.turning);
+        spin.masses_kg[index] * spin.wheels_m_s[index] * tilting_m_s
+    };
+    wheels.iter().enumerate().map(own).sum()
 }

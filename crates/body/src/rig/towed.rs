@@ -4,7 +4,7 @@
 //!
 //! What resists its wheels is told by its task, as in one dimension; the wheels share it by their loads.
 
-use super::contact::{deflection_m, forces, touch};
+use super::contact::{deflection_m, forces, tilt, touch};
 use crate::accounts::{Own, Step};
 use crate::ground::Ground;
 use crate::hop::{self, Bearer};
@@ -222,7 +222,8 @@ impl<'a> Towed<'a> {
     /// Turns its wheels for a step; gives force in its centre of gravity and moment about it.
     pub fn push(&mut self, way: f64, gravity_m_s2: f64, step_s: f64) -> (Vector, Vector, Turned) {
         let wheels = &self.wheels;
-        let turned = self.spin.advance((0.0, 1.0), 0.0, |wheel| wheels[wheel].felt.gross_n, step_s);
+        let turning_n = |wheel: usize| wheels[wheel].felt.gross_n + wheels[wheel].tilting_n;
+        let turned = self.spin.advance((0.0, 1.0), 0.0, turning_n, step_s);
         let (mut force, mut moment) = forces(&self.wheels, &self.spin, &self.state, way);
         if hop::any(&self.wheels) {
             let bearer = Bearer { mass_kg: self.mass_kg, inverse: &self.inverse, state: &self.state };
@@ -257,6 +258,7 @@ impl<'a> Towed<'a> {
         (self.pull_n, self.load_n) = (given.dot(vehicle.ahead()), given.dot(vehicle.up()));
         let hitch = before.pose.translation;
         hop::follow(&mut self.wheels, (&before, &self.state), step_s);
+        tilt(&mut self.wheels, &self.spin, (&before, &self.state), step_s);
         let step =
             Step { before: &before, after: &self.state, lasts_s: step_s, way, weight_n, hitch, turned };
         let rolling = |wheel: usize| 0.5 * (rolled_m_s[wheel] + self.spin.wheels_m_s[wheel]);
@@ -318,6 +320,8 @@ fn wheels(trailer: &Trailer, (weight_n, gravity_m_s2): (f64, f64), hitch_height_
                 side: 0.0,
                 sinkage_m: 0.0,
                 sinking_m_s: 0.0,
+                radius_m: 0.5 * axle.tyre.diameter_m - given_m,
+                tilting_n: 0.0,
                 touch: Touch { deflection_m: given_m, load_n, ..Touch::default() },
                 felt: Felt::default(),
             });

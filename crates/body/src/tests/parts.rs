@@ -107,6 +107,8 @@ fn wheel<'a>(slip: f64, side: f64) -> Wheel<'a> {
         side,
         sinkage_m: 0.0,
         sinking_m_s: 0.0,
+        radius_m: 1.0,
+        tilting_n: 0.0,
         touch: Touch { load_n: 30e3, ..Touch::default() },
         felt: Felt::default(),
     }

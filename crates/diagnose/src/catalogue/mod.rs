@@ -111,10 +111,17 @@ pub fn spell(id: &str) -> Cause {
     cause(id, &[Kind::Motion], terms, equation, &["time_s"], words, experiment).over(Form::OverTime)
 }
 
+/// More drag area, or less: what is taken off a vehicle leaves at least half of it, and what seems to leave less is a wind.
+fn drag_area(around: &Around) -> Term {
+    const LEAST: f64 = 0.5;
+    let size = 0.4 * around.drag_area_m2.max(0.5);
+    linear("extra_area_m2", "m²", size).within(-LEAST * around.drag_area_m2, MOST_SIZES * size)
+}
+
 /// What may differ from run to run: the surface, what is hitched or mounted.
 fn by_run(around: &Around, pull: Term) -> [Cause; 4] {
     let coefficient = linear("coefficient", "1", 0.015).within(-around.coefficient, MOST_SIZES * 0.015);
-    let area = linear("extra_area_m2", "m²", 0.4 * around.drag_area_m2.max(0.5));
+    let area = drag_area(around);
     let one = |id, term, equation, depends_on, words, experiment| {
         cause(id, MOTION, vec![term], equation, depends_on, words, experiment).by_run()
     };
@@ -307,7 +314,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
         cause(
             "aerodynamic_drag",
             MOTION,
-            vec![linear("extra_area_m2", "m²", 0.4 * around.drag_area_m2.max(0.5))],
+            vec![drag_area(around)],
             "F = ½ ρ ΔCdA v²",
             &["speed_m_s"],
             "more aerodynamic drag",

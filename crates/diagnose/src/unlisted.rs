@@ -153,11 +153,15 @@ fn beside(
     };
     let mut best: Option<Stand> = None;
     let mut as_good: Option<Stand> = None;
-    // What is known is likelier from the start than a term of a formula that says as much.
     let listed_of = |state: &State, stand: &Stand| -> Vec<Part> {
         stand.parts.iter().filter(|part| state.cause(&part.trial).law.is_none()).cloned().collect()
     };
-    let good = |state: &State, stand: &Stand| worth(stand) + TOLERANCE * listed_of(state, stand).len() as f64;
+    // What is known is likelier from the start than a term of a formula that says as much; beside one that stays it brings no
+    // more than it tells.
+    let good = |state: &State, stand: &Stand| {
+        let terms = state.pieces(stand) - listed_of(state, stand).len();
+        worth(stand) - TOLERANCE * terms as f64
+    };
     let better = |stand: &Stand, than: &Option<Stand>| {
         than.as_ref().is_none_or(|than| good(&state, stand) > good(&state, than))
     };

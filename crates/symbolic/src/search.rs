@@ -46,6 +46,8 @@ const EXCHANGED: usize = 2;
 const EXCHANGES: usize = 3;
 /// Laws of each number of terms that are validated.
 const VALIDATED: usize = 14;
+/// Laws whose deviance differs by less say as much.
+const AS_GOOD: f64 = 1.0;
 
 /// What was searched.
 pub(crate) struct Searched {
@@ -161,10 +163,29 @@ impl Hunt<'_> {
             if (self.stop)() {
                 return Err(SymbolicError::Interrupted);
             }
-            Ok(amplitudes(self.bench, terms).map(|start| polish(self.bench, start, STEPS)))
+            Ok(amplitudes(self.bench, terms).map(|start| self.on(polish(self.bench, start, STEPS))))
         };
         let all: Result<Vec<Option<Polished>>, _> = starts.into_par_iter().map(one).collect();
         Ok(all?.into_iter().flatten().collect())
+    }
+
+    /// The same with pulses that take while they are on, where they say as much as those that give: beside a constant that is
+    /// known well enough they do not, and what is switched on takes.
+    fn on(&self, law: Polished) -> Polished {
+        let mut law = law;
+        for index in 0..law.terms.len() {
+            let first: usize = law.terms[..index].iter().map(Term::width).sum();
+            let Some(other) = law.terms[index].complement().filter(|_| law.amplitudes[first] < 0.0) else {
+                continue;
+            };
+            let mut terms = law.terms.clone();
+            terms[index] = other;
+            let other = amplitudes(self.bench, terms).map(|start| polish(self.bench, start, STEPS));
+            if let Some(other) = other.filter(|other| self.rank(other) < self.rank(&law) + AS_GOOD) {
+                law = other;
+            }
+        }
+        law
     }
 
     /// The terms that add most to a law, one of each family, and the statistic of the best of the dictionary.

@@ -21,6 +21,17 @@ impl Term {
         (!phases).then(|| Self { factors: vec![one, other] })
     }
 
+    /// The pulse that is on where this one is off; none of what is no pulse by itself.
+    pub fn complement(&self) -> Option<Self> {
+        let [factor] = self.factors[..] else { return None };
+        let Shape::Pulse(level) = factor.shape else { return None };
+        Some(Self::of(Factor {
+            shape: Shape::Pulse(-level),
+            centre: factor.centre + 0.5 * factor.scale,
+            ..factor
+        }))
+    }
+
     /// How many linear columns it is.
     pub fn width(&self) -> usize {
         if self.factors.iter().any(|factor| factor.shape.has_phase()) { 2 } else { 1 }

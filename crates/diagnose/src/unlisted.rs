@@ -63,6 +63,12 @@ fn among(
     }
     let mut found = found;
     for (kind, target) in sought.iter().copied() {
+        // Where no force at the wheels was measured the shaft lacks a force as likely as a consumer, and a formula of watts would
+        // draw the course of a pull.
+        let forced = case.runs.iter().any(|run| run.measured.trace.get("tractive_force_n").is_some());
+        if kind == Kind::Shaft && !forced {
+            continue;
+        }
         // What a formula says of the shaft it says of the fuel.
         // A consumer that is switched with time may take any course: where that is long, no law says more.
         let any = found.stand.parts.iter().any(|part| {

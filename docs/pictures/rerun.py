@@ -136,7 +136,7 @@ def main():
         if options.trim:
             from PIL import Image
 
-            whole = Image.open(picture)
+            whole = Image.open(picture).convert("RGB")
             whole.crop((0, round(options.trim * options.scale), *whole.size)).save(picture, optimize=True)
     finally:
         try:

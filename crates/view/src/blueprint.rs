@@ -4,7 +4,7 @@ use crate::entity::{self, Who};
 use crate::flow;
 use crate::groups::{Group, Rank};
 use crate::lanes::Lane;
-use crate::layout::{LEGEND, Layout, Node};
+use crate::layout::{LEGEND, Layout, Node, WIDE_LEGEND};
 use crate::path::Pose;
 use crate::plots::{BESIDE, COMPARED, residual};
 use crate::{Scene, ViewError};
@@ -23,8 +23,12 @@ pub(crate) fn messages(
     let mut layout = Scenic { layout: Layout::new(application)?, times_s: times_s(lanes) };
     let space = layout.space(scene, lanes)?;
     let text = layout.layout.view("TextDocument", "About", &[entity::summary()], &[])?;
-    let left = layout.layout.split(ContainerKind::Vertical, "", &[space, text], &[5.0, 1.0])?;
-    let right = layout.plots(scene, groups, lanes)?;
+    let (right, rest) = layout.plots(scene, groups, lanes)?;
+    let (below, above) = match rest {
+        Some(rest) => (layout.layout.split(ContainerKind::Horizontal, "", &[text, rest], &[1.0, 1.0])?, 2.8),
+        None => (text, 5.0),
+    };
+    let left = layout.layout.split(ContainerKind::Vertical, "", &[space, below], &[above, 1.0])?;
     let root = layout.layout.split(ContainerKind::Horizontal, "", &[left, right], &[6.0, 5.0])?;
     layout.layout.finish(&root)
 }
@@ -32,8 +36,9 @@ pub(crate) fn messages(
 /// Behind everything in space: dark enough for light labels.
 const SKY: [u8; 3] = [34, 44, 56];
 
-/// What a plot needs beside the lines of its legend, in such lines: its title, its times and some air.
-const FRAME_LINES: f32 = 2.4;
+/// What a plot needs beside the lines of its legend, in such lines: its title and its times. (The viewer gives a legend four
+/// fifths of the plot, so such a line is a quarter higher than one of text.)
+const FRAME_LINES: f32 = 1.7;
 
 /// First and last time of all runs [s].
 fn times_s(lanes: &[Lane]) -> [f64; 2] {
@@ -90,22 +95,22 @@ impl Scenic {
         self.layout.view("3D", "Vehicle", &[entity::world()], &properties)
     }
 
-    /// The plots of one run, or a tab for each run.
-    fn plots(&mut self, scene: &Scene, groups: &[Group], lanes: &[Lane]) -> Result<Node, ViewError> {
-        let mut tabs = Vec::with_capacity(lanes.len() + 1);
-        if let [_, _, ..] = lanes {
-            let overview = self.overview(lanes)?;
-            tabs.push(overview);
+    /// The plots of one run and, apart, those of the rest; or a tab with all for each run.
+    fn plots(
+        &mut self,
+        scene: &Scene,
+        groups: &[Group],
+        lanes: &[Lane],
+    ) -> Result<(Node, Option<Node>), ViewError> {
+        if let [only] = lanes {
+            return self.column((scene, groups), only, None);
         }
+        let mut tabs = vec![self.overview(lanes)?];
         for lane in lanes {
-            let name = if lanes.len() > 1 { lane.run.id.as_str() } else { "" };
-            let column = self.column((scene, groups), lane, name)?;
+            let (column, _) = self.column((scene, groups), lane, Some(&lane.run.id))?;
             tabs.push(column);
         }
-        if let [only] = tabs.as_slice() {
-            return Ok(only.clone());
-        }
-        self.layout.split(ContainerKind::Tabs, "Runs", &tabs, &[])
+        Ok((self.layout.split(ContainerKind::Tabs, "Runs", &tabs, &[])?, None))
     }
 
     /// What all runs are held beside one another by.
@@ -136,13 +141,13 @@ impl Scenic {
     }
 
     /// Speed, its residual, forces, where the power goes, and tabs for wheels and for the rest; each as high as its legend needs,
-    /// tabs as their first one.
+    /// tabs as their first one. Without a name the rest stands apart.
     fn column(
         &mut self,
         (scene, groups): (&Scene, &[Group]),
         lane: &Lane,
-        name: &str,
-    ) -> Result<Node, ViewError> {
+        name: Option<&str>,
+    ) -> Result<(Node, Option<Node>), ViewError> {
         let id = &lane.run.id;
         let (mut parts, mut shares) = (Vec::new(), Vec::new());
         let (mut wheels, mut rest) = (Vec::new(), Vec::new());
@@ -170,7 +175,8 @@ impl Scenic {
                 .map(|channel| knows(Some(lane.run), channel) + knows(lane.recording, channel))
                 .sum();
             let share = FRAME_LINES + drawn as f32;
-            let plot = self.plot(&group.title, &lines)?;
+            let room = if group.rank == Rank::More && name.is_none() { WIDE_LEGEND } else { LEGEND };
+            let plot = self.layout.plot(&group.title, &lines, self.times_s, room)?;
             match group.rank {
                 Rank::Main => {}
                 Rank::Wheels => {
@@ -198,14 +204,20 @@ impl Scenic {
             parts.push(self.plot(flow::TITLE, &flows)?);
             shares.push(FRAME_LINES + flows.len() as f32);
         }
-        for (title, tabs) in [("Wheels", wheels), ("More", rest)] {
+        let mut apart = None;
+        for (title, tabs, stays) in [("Wheels", wheels, true), ("More", rest, name.is_some())] {
             let (tabs, needed): (Vec<Node>, Vec<f32>) = tabs.into_iter().unzip();
-            if !tabs.is_empty() {
-                parts.push(self.layout.split(ContainerKind::Tabs, title, &tabs, &[])?);
-                shares.push(needed[0]);
+            let Some(share) = needed.first() else { continue };
+            let tabs = self.layout.split(ContainerKind::Tabs, title, &tabs, &[])?;
+            if stays || parts.is_empty() {
+                parts.push(tabs);
+                shares.push(*share);
+            } else {
+                apart = Some(tabs);
             }
         }
-        self.layout.split(ContainerKind::Vertical, name, &parts, &shares)
+        let column = self.layout.split(ContainerKind::Vertical, name.unwrap_or_default(), &parts, &shares)?;
+        Ok((column, apart))
     }
 
     fn plot(&mut self, title: &str, lines: &[EntityPath]) -> Result<Node, ViewError> {

@@ -17,6 +17,8 @@ use rerun::{ApplicationId, AsComponents, EntityPath, RecordingStreamBuilder};
 
 /// How much longer than the runs plots are, so that their legend hides no line.
 pub(crate) const LEGEND: f64 = 0.3;
+/// The same of a plot of half the width.
+pub(crate) const WIDE_LEGEND: f64 = 0.5;
 
 /// A view or a container.
 #[derive(Clone)]

@@ -5,7 +5,7 @@ use super::plan::Plan;
 use super::{Diagnosis, Shown, Stage, lines};
 use crate::ViewError;
 use crate::entity;
-use crate::layout::{LEGEND, Layout, Node};
+use crate::layout::{LEGEND, Layout, Node, WIDE_LEGEND};
 use rerun::external::re_sdk_types::blueprint::archetypes::{Background, VisualBounds2D};
 use rerun::external::re_sdk_types::blueprint::components::{BackgroundKind, ContainerKind};
 use rerun::log::LogMsg;
@@ -15,8 +15,6 @@ use rerun::{ApplicationId, AsComponents, EntityPath};
 const DARK: [u8; 3] = [22, 26, 32];
 /// Runs whose signal is seen at once; the others have it in their tabs.
 const AT_ONCE: usize = 3;
-/// Room of a legend in a plot of half the width, as a share of its run.
-const WIDE_LEGEND: f64 = 0.5;
 
 /// The messages that make the layout.
 pub(crate) fn messages(
@@ -32,12 +30,12 @@ pub(crate) fn messages(
     let (mut parts, mut shares) = (Vec::new(), Vec::new());
     if let Some(plan) = plan {
         parts.push(painted(&mut layout, diagnosis, plan)?);
-        shares.push(5.0);
+        shares.push(if plan.wide() { 5.0 } else { 4.4 });
         parts.push(maps(&mut layout, diagnosis)?);
-        shares.push(4.0);
+        shares.push(3.7);
     }
     parts.push(layout.split(ContainerKind::Horizontal, "", &texts, &[1.0, 1.0])?);
-    shares.push(4.0);
+    shares.push(5.4);
     let left = layout.split(ContainerKind::Vertical, "", &parts, &shares)?;
     let root = if diagnosis.shown.is_empty() {
         left
@@ -126,7 +124,7 @@ fn proof(layout: &mut Layout, diagnosis: &Diagnosis) -> Result<Node, ViewError> 
             tabs.push(layout.split(ContainerKind::Vertical, shown.run, &parts, &shares)?);
         }
     }
-    let share = signals.len() as f32;
+    let share = (2.0 * signals.len() as f32).min(4.5);
     let above =
         layout.split(ContainerKind::Vertical, "Before and after", &signals, &vec![1.0; signals.len()])?;
     let below = match tabs.as_slice() {

@@ -101,7 +101,7 @@ impl Plan {
         // The legend is as wide as the longer side.
         let half_m = (0.5 * (right - left) + 0.06 * size_m).max(0.55 * size_m);
         let middle = f64::midpoint(left, right);
-        [middle - half_m, top - self.margin_m(0.06), middle + half_m, bottom + self.margin_m(0.2)]
+        [middle - half_m, top - self.margin_m(0.06), middle + half_m, bottom + self.margin_m(0.22)]
     }
 
     /// Draws the lines of both stages, the legend, and where each run is as time passes.

@@ -150,8 +150,11 @@ fn several_runs_have_a_vehicle_and_a_tab_each() {
     }
     let views =
         |content: &Content| content.layout.keys().filter(|entity| entity.ends_with("/ViewContents")).count();
-    // Vehicle, text, speed, force, length; with two runs the speeds of both, and three plots more.
-    assert_eq!((views(&one), views(&two)), (5, 9));
+    // Vehicle, text, energy flow, speed, force, length; with two runs the speeds of both, and four plots more.
+    assert_eq!((views(&one), views(&two)), (6, 11));
+    for id in ["r1", r"a\/b"] {
+        assert!(!two.line(&format!("/flow/{id}/drag")).is_empty());
+    }
 }
 
 #[test]

@@ -141,9 +141,18 @@ impl Reduced {
         Some(Estimate { beta, covariance: cholesky.inverse(), log_evidence: -0.5 * deviance })
     }
 
-    /// Squared correlation of two groups of columns, once `nuisance` is projected out: the largest canonical one.
+    /// Squared correlation of two groups of columns, once `nuisance` is projected out: the largest canonical one. What does
+    /// not show in the rows at its usual size is like nothing.
     pub fn squared_correlation(&self, one: &[usize], other: &[usize], nuisance: &[usize], sd: &[f64]) -> f64 {
-        let all: Vec<usize> = nuisance.iter().chain(one).chain(other).copied().collect();
+        /// Evidence of a column of its usual size below which it says nothing.
+        const NOTHING: f64 = 1e-6;
+        let shows = |column: &usize| self.matrix[(*column, *column)] * sd[*column].powi(2) > NOTHING;
+        let [one, other]: [Vec<usize>; 2] =
+            [one, other].map(|group| group.iter().copied().filter(shows).collect());
+        if one.is_empty() || other.is_empty() {
+            return 0.0;
+        }
+        let all: Vec<usize> = nuisance.iter().chain(&one).chain(&other).copied().collect();
         let sum = self.chosen(&all).0;
         let (n, p, q) = (nuisance.len(), one.len(), other.len());
         let mut inner = sum.view((0, 0), (n, n)).into_owned();
@@ -170,5 +179,38 @@ impl Reduced {
         let product = left * right;
         let largest = product.complex_eigenvalues().iter().map(|value| value.re).fold(0.0, f64::max);
         largest.clamp(0.0, 1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Products of columns of four rows with noise of one.
+    fn reduced(columns: &[[f64; 4]]) -> Reduced {
+        let x = DMatrix::from_fn(4, columns.len(), |row, column| columns[column][row]);
+        Reduced {
+            matrix: x.transpose() * &x,
+            vector: DVector::zeros(columns.len()),
+            scalar: 0.0,
+            log_determinant: 0.0,
+            rows: 4,
+        }
+    }
+
+    /// Beside a level, (0, 1, 0, 1) is (−1, 1, −1, 1)/2 and (0, 0, 0, 1) is (−1, −1, −1, 3)/4: cos² = (4/8)²/(1 · 12/16) = 1/3.
+    #[test]
+    fn a_correlation_is_that_beside_what_is_projected_out() {
+        let reduced = reduced(&[[1.0; 4], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]]);
+        let r2 = reduced.squared_correlation(&[1], &[2], &[0], &[1e6, 1.0, 1.0]);
+        assert!((r2 - 1.0 / 3.0).abs() < 1e-6, "{r2}");
+    }
+
+    /// A bell between two samples is nought in every row: nothing says the same as it.
+    #[test]
+    fn what_shows_in_no_row_is_like_nothing() {
+        let reduced = reduced(&[[1.0, 2.0, 3.0, 5.0], [0.0; 4], [2.0, 4.0, 6.0, 10.0]]);
+        assert_eq!(reduced.squared_correlation(&[0], &[1], &[], &[1.0; 3]), 0.0);
+        assert!(reduced.squared_correlation(&[0], &[1, 2], &[], &[1.0; 3]) > 0.999);
     }
 }

@@ -118,6 +118,13 @@ fn drag_area(around: &Around) -> Term {
     linear("extra_area_m2", "m²", size).within(-LEAST * around.drag_area_m2, MOST_SIZES * size)
 }
 
+/// A load that comes and goes: a loaded truck weighs three times what it weighs empty, and no vehicle gives away more of itself.
+fn load(around: &Around) -> Term {
+    const LEAST: f64 = 0.7;
+    let size = 0.1 * around.mass_kg;
+    linear("mass_kg", "kg", size).within(-LEAST * around.mass_kg, MOST_SIZES * size)
+}
+
 /// What may differ from run to run: the surface, what is hitched or mounted.
 fn by_run(around: &Around, pull: Term) -> [Cause; 4] {
     let coefficient = linear("coefficient", "1", 0.015).within(-around.coefficient, MOST_SIZES * 0.015);
@@ -304,7 +311,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
         cause(
             "payload_change",
             MOTION,
-            vec![linear("mass_kg", "kg", 0.1 * around.mass_kg)],
+            vec![load(around)],
             "F = Δm(t) (dv/dt + g (sin θ + c cos θ))",
             &["acceleration_m_s2", "time_s"],
             "a load that changes on the way",

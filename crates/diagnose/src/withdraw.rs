@@ -96,7 +96,7 @@ pub fn proven(
         withdrawn = true;
     }
     for place in (0..best.found.stand.parts.len()).rev() {
-        if let Some(lesser) = without_idle_law(case, system, pool, &best, (events, by), place)? {
+        if let Some(lesser) = without_idle(case, system, pool, &best, (events, by), place)? {
             best = lesser;
             withdrawn = true;
         }
@@ -116,9 +116,10 @@ pub fn proven(
     Ok(best)
 }
 
-/// What was found without one law that nobody listed, where runs held out are no better with it than without it or than
-/// with the nominal scenario, in the balance that it belongs to: a formula is free to follow the runs that it was made of.
-fn without_idle_law(
+/// What was found without one law that nobody listed, or without one map of a path, where runs held out are no better with
+/// it than without it or than with the nominal scenario, in the balance that it belongs to: formulas and maps are free to
+/// follow the runs that they were made of.
+fn without_idle(
     case: &Case,
     system: &System,
     pool: &mut Pool,
@@ -128,7 +129,13 @@ fn without_idle_law(
 ) -> Result<Option<Proven>, DiagnoseError> {
     let trial = &best.found.stand.parts[place].trial;
     let cause = &case.causes[trial.cause];
-    let kind = system.kinds.iter().copied().find(|kind| cause.law.is_some() && kind.among(cause.balances));
+    // What a map says of a lane is often less than the noise of one sample: it may bring next to nothing, and no harm.
+    let needed = match (&cause.law, cause.form) {
+        (Some(_), _) => RISES,
+        (None, Form::OverPosition) => 0.0,
+        (None, _) => return Ok(None),
+    };
+    let kind = system.kinds.iter().copied().find(|kind| kind.among(cause.balances));
     let (Some(kind), Some(found)) = (kind, without(case, system, pool, &best.found, place)) else {
         return Ok(None);
     };
@@ -137,7 +144,7 @@ fn without_idle_law(
     let (with, without) = (held_out(best)?, held_out(&lesser)?);
     let idle = with
         .zip(without)
-        .is_some_and(|(with, without)| with.after > (1.0 - RISES) * without.after.min(with.before));
+        .is_some_and(|(with, without)| with.after > (1.0 - needed) * without.after.min(with.before));
     Ok(idle.then_some(lesser))
 }
 

@@ -237,6 +237,24 @@ fn without_the_true_cause_no_listed_one_is_claimed_in_silence() {
     }
 }
 
+/// Soft ground that had dried when the run that was held out was driven: better by the level of the soil's resistance, which
+/// is calibrated, that run is worse with the map than without it.
+#[test]
+fn a_map_that_does_not_help_the_run_that_was_held_out_is_not_claimed() {
+    const LEVEL: f64 = 0.08;
+    let patch = "soft_ground(positions_m: [30.0, 45.0, 60.0], coefficients: [0.03, 0.02])";
+    let (mut recording, dry) = (recorded(LEVEL, patch), recorded(LEVEL, ""));
+    assert!(named(&found(&recording, &Options::default()).unwrap(), "soft_ground"));
+    let held_out = recording.runs.iter().position(|run| run.held_out).unwrap();
+    recording.runs[held_out] = dry.runs[held_out].clone();
+    let found = found(&recording, &Options::default()).unwrap();
+    let errors = found.diagnosis.fit.held_out.as_ref().unwrap();
+    assert!(errors.rmse_after < errors.rmse_before, "{}", found.diagnosis.answer);
+    let maps = ["soft_ground", "grade"];
+    let claimed = found.diagnosis.findings.iter().any(|finding| maps.contains(&finding.id.as_str()));
+    assert!(!claimed, "{}", found.diagnosis.answer);
+}
+
 /// The speed arrives so much late [s].
 const LATE_S: f64 = 0.3;
 

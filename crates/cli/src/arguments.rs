@@ -255,6 +255,9 @@ pub struct ValidateOptions {
     /// The page
     #[arg(long, value_name = "FILE", default_value = "docs/validation.md")]
     pub out: PathBuf,
+    /// A page of a comparison with another program, taken in at the end; once for each
+    #[arg(long, value_name = "PAGE.md")]
+    pub beside: Vec<PathBuf>,
 }
 
 /// Options of `headland check`.

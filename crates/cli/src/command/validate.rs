@@ -15,7 +15,7 @@ struct Written {
 
 /// Runs the command.
 pub fn validate(registry: &Registry, options: &ValidateOptions, seed: u64, say: Say) -> Result<(), Failure> {
-    let text = validation::page(registry, &options.scenarios, seed, say)?;
+    let text = validation::page(registry, &options.scenarios, (&options.beside, &options.out), seed, say)?;
     std::fs::write(&options.out, &text).map_err(|error| Failure::unwritable(&options.out, &error))?;
     let file = options.out.display().to_string();
     let told = format!("written  {file}");

@@ -1,5 +1,6 @@
 //! `docs/validation.md`, made from the recordings: no figure in it is typed in.
 
+mod beside;
 mod buggy;
 mod car;
 mod drive;
@@ -12,11 +13,20 @@ mod vehicle;
 use crate::failure::Failure;
 use crate::say::Say;
 use headland_plugin::Registry;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// The whole page; `scenarios` is the folder of the scenarios, `recordings` below it that of the descriptions.
-pub fn page(registry: &Registry, scenarios: &Path, seed: u64, say: Say) -> Result<String, Failure> {
-    let parts = [
+/// The whole page; `scenarios` is the folder of the scenarios, `recordings` below it that of the descriptions. Pages `beside`
+/// stand at its end, which is to be the file `out`.
+pub fn page(
+    registry: &Registry,
+    scenarios: &Path,
+    (beside, out): (&[PathBuf], &Path),
+    seed: u64,
+    say: Say,
+) -> Result<String, Failure> {
+    // First what takes no time to refuse.
+    let beside = beside.iter().map(|page| beside::part(page, out)).collect::<Result<Vec<_>, _>>()?;
+    let mut parts = vec![
         car::part(registry, scenarios, say)?,
         fuelled::truck(registry, scenarios, say)?,
         fuelled::camry(registry, scenarios, say)?,
@@ -25,6 +35,7 @@ pub fn page(registry: &Registry, scenarios: &Path, seed: u64, say: Say) -> Resul
         drive::part(registry, scenarios)?,
         buggy::part(scenarios, seed, say)?,
     ];
+    parts.extend(beside);
     Ok(format!("{}\n{}", INTRODUCTION, parts.join("\n")))
 }
 

@@ -268,12 +268,17 @@ impl State<'_> {
     }
 
     /// Whether a set leaves the free parameters where they are known to be, or at least where another has them: a law that
-    /// takes the place of what is known says nothing new.
+    /// takes the place of what is known says nothing new. One that brings many times what a parameter's drift costs does.
     fn keeps_to_priors(&self, stand: &Stand, other: &Stand) -> bool {
         /// Nothing that is known is so many standard deviations wrong.
         const MOST: f64 = 3.5;
+        /// What a drift may cost of what a set brings.
+        const LITTLE: f64 = 0.05;
+        let more = (worth(stand) - worth(other)).max(0.0);
+        // The square of a drift counts half in ln p.
+        let most = MOST.max((2.0 * LITTLE * more).sqrt());
         let off = |stand: &Stand, column: usize| stand.estimate.beta[column].abs() / self.pool.sd[column];
-        (0..self.pool.nuisance).all(|column| off(stand, column) < MOST.max(off(other, column)))
+        (0..self.pool.nuisance).all(|column| off(stand, column) < most.max(off(other, column)))
     }
 
     /// Whether a set with a law says in fewer causes what another says. As many as there may be at most are too many: they

@@ -21,6 +21,8 @@ const MARGIN: f64 = 6.0;
 const BETTER: f64 = 0.1;
 /// By this share where it needs fewer causes than they do: two of them that patch each other are no knowledge.
 const SIMPLER: f64 = 0.03;
+/// A law that brings this share of that is as good as they are.
+const DOUBT: f64 = 0.5;
 /// A law works in at least this share of the rows, by the participation ratio of its squares.
 const EVERYWHERE: f64 = 0.04;
 /// Causes that hide each other bring beside one another up to so many times what the best of them brings alone.
@@ -178,16 +180,20 @@ fn beside(
             let simpler = state.simpler(&stand, &found.stand);
             let more = worth(&stand) - worth(&found.stand);
             let clearly = more > state.margin(&found, &stand);
-            let able = !state.impossible(&stand.parts, &stand.estimate)
-                && (clearly || simpler && more > -TOLERANCE)
+            let sound = !state.impossible(&stand.parts, &stand.estimate)
                 && state.works_widely(&stand)
-                && (simpler || !state.is_listed(&stand))
-                && !state.paraphrases(&stand, &found.stand)
                 && state.sensible(&stand)
                 && state.keeps_to_priors(&stand, &found.stand);
+            let able = sound
+                && (clearly || simpler && more > -TOLERANCE)
+                && (simpler || !state.is_listed(&stand))
+                && !state.paraphrases(&stand, &found.stand);
+            // What says it better than the listed causes, and not by enough, is a doubt of them, whatever it is like.
+            let as_short = state.pieces(&stand) <= found.stand.parts.len();
+            let doubtful = sound && as_short && more > DOUBT * state.margin(&found, &stand);
             if able && clearly && better(&stand, &best) {
                 best = Some(stand);
-            } else if able && better(&stand, &as_good) {
+            } else if (able || doubtful) && better(&stand, &as_good) {
                 as_good = Some(stand);
             }
         }

@@ -85,6 +85,17 @@ fn a_drag_that_dies_away_with_speed_is_found_as_an_equation_that_runs() {
     is_found_as_a_law(FADING);
 }
 
+/// Between a level and an aerodynamic drag, which say much of it together: it is said, or named beside what is claimed.
+#[test]
+fn a_drag_between_two_listed_ones_is_not_claimed_as_those_in_silence() {
+    let hidden =
+        r#"expression(resistance: "a_n * (v / v0_m_s)^1.5", constants: {"a_n": 2500.0, "v0_m_s": 6.0})"#;
+    let found = found(&recorded(0.069, hidden), &Options::default()).unwrap();
+    let said = &found.diagnosis;
+    let open = [Verdict::Unlisted, Verdict::CannotTell].contains(&said.verdict);
+    assert!(open && named(&found, "unlisted"), "{}", said.answer);
+}
+
 /// A driveline that loses more the faster it turns: no listed loss of the drive goes with speed alone.
 #[test]
 fn a_loss_that_goes_with_drive_and_speed_is_found_as_a_share_of_the_drive() {

@@ -8,7 +8,7 @@
 #![allow(clippy::unwrap_used, reason = "a bench stops where something is missing")]
 
 use headland_calibrate::statistics::Draws;
-use headland_diagnose::{Options, Progress, diagnose};
+use headland_diagnose::{Options, Silent, diagnose};
 use headland_recording::{RecordedRun, Recording};
 use headland_scenario::Scenario;
 use headland_sim::{Outcome, simulate};
@@ -20,16 +20,6 @@ const RUNS: usize = 10;
 /// Of the speed sensor [m/s].
 const NOISE_M_S: f64 = 0.02;
 const CHANNELS: [&str; 4] = ["speed_m_s", "position_m", "heading_rad", "tractive_force_n"];
-
-struct Silent;
-
-impl Progress for Silent {
-    fn step(&self, _: &str) {}
-
-    fn interrupted(&self) -> bool {
-        false
-    }
-}
 
 fn main() {
     let registry = headland_stock::registry();

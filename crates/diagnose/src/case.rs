@@ -37,6 +37,18 @@ pub trait Progress: Sync {
     fn interrupted(&self) -> bool;
 }
 
+/// Nobody listens, and nobody interrupts.
+#[derive(Clone, Copy, Debug)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn step(&self, _: &str) {}
+
+    fn interrupted(&self) -> bool {
+        false
+    }
+}
+
 /// A fault of a sensor that the runs were corrected for.
 #[derive(Clone, Debug)]
 pub(crate) struct Correction {

@@ -70,7 +70,7 @@ mod withdraw;
 mod words;
 
 pub use balance::Kind;
-pub use case::{Options, Progress};
+pub use case::{Options, Progress, Silent};
 pub use error::DiagnoseError;
 pub use experiment::Experiment;
 pub use map::{Mismatch, Over};

@@ -63,21 +63,21 @@ fn among(
     if !case.wanted("unlisted") {
         return Ok(found);
     }
+    // Where no force at the wheels was measured the shaft lacks a force as likely as a consumer, and a formula of watts would
+    // draw the course of a pull.
+    let forced = case.runs.iter().any(|run| run.measured.trace.get("tractive_force_n").is_some());
     let mut found = found;
     for (kind, target) in sought.iter().copied() {
-        // Where no force at the wheels was measured the shaft lacks a force as likely as a consumer, and a formula of watts would
-        // draw the course of a pull.
-        let forced = case.runs.iter().any(|run| run.measured.trace.get("tractive_force_n").is_some());
         if kind == Kind::Shaft && !forced {
             continue;
         }
-        // What a formula says of the shaft it says of the fuel.
         // A consumer that is switched with time may take any course: where that is long, no law says more.
         let any = found.stand.parts.iter().any(|part| {
             let cause = &case.causes[part.trial.cause];
             kind != Kind::Motion && cause.form == Form::OverTime && cause.balances.contains(&kind)
         });
         let any = any && system.row_count_of(kind) > MANY_ROWS;
+        // What a formula says of the shaft it says of the fuel.
         let said_already = kind == Kind::Fuel && system.has(Kind::Shaft);
         if system.has(kind)
             && !said_already
@@ -179,7 +179,8 @@ fn beside(
         for stand in [more, Some(stand)].into_iter().flatten() {
             let simpler = state.simpler(&stand, &found.stand);
             let more = worth(&stand) - worth(&found.stand);
-            let clearly = more > state.margin(&found, &stand);
+            let margin = state.margin(&found, &stand);
+            let clearly = more > margin;
             let sound = !state.impossible(&stand.parts, &stand.estimate)
                 && state.works_widely(&stand)
                 && state.sensible(&stand)
@@ -190,7 +191,7 @@ fn beside(
                 && !state.paraphrases(&stand, &found.stand);
             // What says it better than the listed causes, and not by enough, is a doubt of them, whatever it is like.
             let as_short = state.pieces(&stand) <= found.stand.parts.len();
-            let doubtful = sound && as_short && more > DOUBT * state.margin(&found, &stand);
+            let doubtful = sound && as_short && more > DOUBT * margin;
             if able && clearly && better(&stand, &best) {
                 best = Some(stand);
             } else if (able || doubtful) && better(&stand, &as_good) {

@@ -5,22 +5,12 @@
 #![allow(clippy::result_large_err, reason = "a test fails once")]
 
 use headland_calibrate::statistics::Draws;
-use headland_diagnose::{Diagnosed, Experiment, Options, Progress, Verdict, diagnose};
+use headland_diagnose::{Diagnosed, Experiment, Options, Silent, Verdict, diagnose};
 use headland_recording::{Known, RecordedRun, Recording};
 use headland_scenario::Scenario;
 use headland_sim::simulate;
 use headland_trace::{Origin, Trace};
 use std::path::{Path, PathBuf};
-
-struct Silent;
-
-impl Progress for Silent {
-    fn step(&self, _: &str) {}
-
-    fn interrupted(&self) -> bool {
-        false
-    }
-}
 
 /// One run: what is driven, with what at work.
 #[derive(Clone)]

@@ -1,22 +1,11 @@
 //! Recordings of a rigid body, given to a diagnosis that knows one dimension: it names what one dimension lacks.
 
 use headland_calibrate::statistics::Draws;
-use headland_diagnose::{Diagnosed, Options, Progress, diagnose};
+use headland_diagnose::{Diagnosed, Options, Silent, diagnose};
 use headland_recording::{RecordedRun, Recording};
 use headland_scenario::{Fidelity, Scenario};
 use headland_trace::{Origin, Trace};
 use std::path::{Path, PathBuf};
-
-/// Nobody listens.
-struct Silent;
-
-impl Progress for Silent {
-    fn step(&self, _: &str) {}
-
-    fn interrupted(&self) -> bool {
-        false
-    }
-}
 
 /// Noise of a speed sensor [m/s].
 const NOISE_M_S: f64 = 0.02;

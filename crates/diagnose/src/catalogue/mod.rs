@@ -15,7 +15,7 @@ use crate::balance::Kind;
 use cause::cause;
 use powers::powers;
 use sensors::sensors;
-use term::{MOST_SIZES, linear, positive, shape};
+use term::{linear, positive, shape};
 
 /// What the vehicle and its runs are like, for scales and grids.
 #[derive(Clone, Debug)]
@@ -114,20 +114,18 @@ pub fn spell(id: &str) -> Cause {
 /// More drag area, or less: what is taken off a vehicle leaves at least half of it, and what seems to leave less is a wind.
 fn drag_area(around: &Around) -> Term {
     const LEAST: f64 = 0.5;
-    let size = 0.4 * around.drag_area_m2.max(0.5);
-    linear("extra_area_m2", "m²", size).within(-LEAST * around.drag_area_m2, MOST_SIZES * size)
+    linear("extra_area_m2", "m²", 0.4 * around.drag_area_m2.max(0.5)).no_less(-LEAST * around.drag_area_m2)
 }
 
 /// A load that comes and goes: a loaded truck weighs three times what it weighs empty, and no vehicle gives away more of itself.
 fn load(around: &Around) -> Term {
     const LEAST: f64 = 0.7;
-    let size = 0.1 * around.mass_kg;
-    linear("mass_kg", "kg", size).within(-LEAST * around.mass_kg, MOST_SIZES * size)
+    linear("mass_kg", "kg", 0.1 * around.mass_kg).no_less(-LEAST * around.mass_kg)
 }
 
 /// What may differ from run to run: the surface, what is hitched or mounted.
 fn by_run(around: &Around, pull: Term) -> [Cause; 4] {
-    let coefficient = linear("coefficient", "1", 0.015).within(-around.coefficient, MOST_SIZES * 0.015);
+    let coefficient = linear("coefficient", "1", 0.015).no_less(-around.coefficient);
     let area = drag_area(around);
     let one = |id, term, equation, depends_on, words, experiment| {
         cause(id, MOTION, vec![term], equation, depends_on, words, experiment).by_run()
@@ -277,7 +275,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
         cause(
             "soft_ground",
             MOTION,
-            vec![linear("coefficient", "1", 0.02).within(-around.coefficient, MOST_SIZES * 0.02)],
+            vec![linear("coefficient", "1", 0.02).no_less(-around.coefficient)],
             "F = Δc(x) N",
             &["position_m"],
             "softer ground along the path",

@@ -18,7 +18,7 @@ pub struct Term {
 }
 
 /// An effect so many times its usual size is none of this kind.
-pub const MOST_SIZES: f64 = 8.0;
+const MOST_SIZES: f64 = 8.0;
 
 pub fn linear(name: &'static str, unit: &'static str, scale: f64) -> Term {
     Term { name, unit, scale, linear: true, low: -MOST_SIZES * scale, high: MOST_SIZES * scale }
@@ -53,6 +53,11 @@ impl Term {
     /// Held where it is.
     pub fn held(self, value: f64) -> Self {
         self.within(value, value)
+    }
+
+    /// With another lower limit.
+    pub fn no_less(self, low: f64) -> Self {
+        Self { low, ..self }
     }
 
     /// With other limits.

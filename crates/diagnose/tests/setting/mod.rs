@@ -3,24 +3,13 @@
 #![allow(dead_code, reason = "each file of tests uses some of it")]
 
 use headland_calibrate::statistics::Draws;
-use headland_diagnose::{DiagnoseError, Diagnosed, Options, Progress, diagnose};
+use headland_diagnose::{DiagnoseError, Diagnosed, Options, Silent, diagnose};
 use headland_plugin::Registry;
 use headland_recording::{RecordedRun, Recording};
 use headland_scenario::Scenario;
 use headland_sim::simulate;
 use headland_trace::{Origin, Trace};
 use std::path::{Path, PathBuf};
-
-/// Nobody listens.
-pub struct Silent;
-
-impl Progress for Silent {
-    fn step(&self, _: &str) {}
-
-    fn interrupted(&self) -> bool {
-        false
-    }
-}
 
 /// A tractor that drives up, holds, slows down and coasts, to and fro; `more` are further fields.
 pub fn scenario(coefficient: f64, effects: &str, more: &str) -> String {

@@ -8,6 +8,7 @@ use crate::noise::{Noises, Whiteners};
 use crate::rows::Chunk;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// A regressor: one vector for each chunk.
 pub type Column = Vec<DVector<f64>>;
@@ -72,20 +73,19 @@ impl Whitened {
 
     /// The products over the runs that are `fit`.
     pub fn reduced(&self, chunks: &[Chunk], fit: &[bool]) -> Reduced {
-        let products: Vec<Option<DMatrix<f64>>> = chunks
-            .par_iter()
-            .zip(&self.chunks)
-            .map(|(chunk, x)| fit[chunk.run].then(|| x.transpose() * x))
-            .collect();
+        let used: Vec<usize> = (0..chunks.len()).filter(|index| fit[chunks[*index].run]).collect();
+        let product = |batch: &Vec<usize>| {
+            let x = self.stacked(batch);
+            x.transpose() * &*x
+        };
+        let products: Vec<DMatrix<f64>> = self.batches(&used).par_iter().map(product).collect();
         let mut sum = DMatrix::zeros(self.width + 1, self.width + 1);
-        let (mut log_determinant, mut rows) = (0.0, 0);
-        for (number, (chunk, product)) in chunks.iter().zip(products).enumerate() {
-            if let Some(product) = product {
-                sum += product;
-                log_determinant += self.whiteners.log_determinant(number, chunk);
-                rows += chunk.rows.len();
-            }
+        for product in products {
+            sum += product;
         }
+        let log_determinant =
+            used.iter().map(|index| self.whiteners.log_determinant(*index, &chunks[*index])).sum();
+        let rows = used.iter().map(|index| chunks[*index].rows.len()).sum();
         Reduced {
             matrix: sum.view((0, 0), (self.width, self.width)).into_owned(),
             vector: sum.view((0, self.width), (self.width, 1)).column(0).into_owned(),
@@ -93,6 +93,44 @@ impl Whitened {
             log_determinant,
             rows,
         }
+    }
+}
+
+impl Whitened {
+    /// Chunks side by side whose products are made at once: those of a few rows each take as long as those of many.
+    fn batches(&self, chunks: &[usize]) -> Vec<Vec<usize>> {
+        /// More rows gain nothing.
+        const ROWS: usize = 200;
+        let mut batches: Vec<Vec<usize>> = Vec::new();
+        let mut rows = 0;
+        for chunk in chunks {
+            let own = self.chunks[*chunk].nrows();
+            match batches.last_mut() {
+                Some(last) if rows + own <= ROWS => last.push(*chunk),
+                _ => {
+                    batches.push(vec![*chunk]);
+                    rows = 0;
+                }
+            }
+            rows += own;
+        }
+        batches
+    }
+
+    /// The rows of some chunks, one chunk below the other.
+    fn stacked(&self, chunks: &[usize]) -> Cow<'_, DMatrix<f64>> {
+        if let [chunk] = chunks {
+            return Cow::Borrowed(&self.chunks[*chunk]);
+        }
+        let rows = chunks.iter().map(|chunk| self.chunks[*chunk].nrows()).sum();
+        let mut all = DMatrix::zeros(rows, self.width + 1);
+        let mut first = 0;
+        for chunk in chunks {
+            let own = &self.chunks[*chunk];
+            all.rows_mut(first, own.nrows()).copy_from(own);
+            first += own.nrows();
+        }
+        Cow::Owned(all)
     }
 }
 

@@ -7,6 +7,8 @@
 //! Source: the test-function form of system identification, Messenger and Bortz, *Multiscale Model. Simul.* 19 (2021),
 //! with the hat as test function.
 
+use std::ops::Range;
+
 /// Which samples make a row.
 #[derive(Clone, Debug)]
 pub struct Row {
@@ -35,12 +37,12 @@ type Block = (f64, usize, usize);
 /// Longer chunks cost more than they tell: what a function is made of is dense within a chunk.
 const LONGEST_CHUNK: usize = 150;
 /// A shorter chunk tells less about the noise than its ends disturb.
-const SHORTEST_CHUNK: usize = 4;
+const SHORTEST_CHUNK: usize = 2;
 
-/// Cuts a run into chunks of rows of blocks `block_s` long. Samples that are not `usable` break a chunk.
+/// Cuts a run into chunks of rows of blocks `block_s` long. Samples that are not `usable` break a chunk, and the blocks begin
+/// anew behind them: in a town what is left between two brakes is short.
 pub fn chunks(balance: usize, run: usize, time_s: &[f64], usable: &[bool], block_s: f64) -> Vec<Chunk> {
     let mut chunks = Vec::new();
-    let Some(&start) = time_s.first() else { return chunks };
     let mut open: Vec<Row> = Vec::new();
     let mut close = |open: &mut Vec<Row>| {
         let rows = std::mem::take(open);
@@ -51,36 +53,65 @@ pub fn chunks(balance: usize, run: usize, time_s: &[f64], usable: &[bool], block
             }
         }
     };
-    let block_of = |sample: usize| ((time_s[sample] - start) / block_s + 1e-9).floor();
+    for (number, stretch) in stretches(usable).into_iter().enumerate() {
+        // Blocks are counted from the begin of the recording, and anew behind what may not be used.
+        let start_s = time_s[if number == 0 { 0 } else { stretch.start }];
+        let blocks = blocks(time_s, stretch, start_s, block_s);
+        for pair in blocks.windows(2) {
+            let ((one, from, middle), (two, _, to)) = (pair[0], pair[1]);
+            if two - one > 1.5 {
+                close(&mut open);
+                continue;
+            }
+            open.push(row(time_s, [from, middle, to], block_s));
+        }
+        close(&mut open);
+    }
+    chunks
+}
+
+/// Samples that follow each other and are usable.
+fn stretches(usable: &[bool]) -> Vec<Range<usize>> {
+    let mut all: Vec<Range<usize>> = Vec::new();
+    for sample in (0..usable.len()).filter(|sample| usable[*sample]) {
+        match all.last_mut() {
+            Some(last) if last.end == sample => last.end = sample + 1,
+            _ => all.push(sample..sample + 1),
+        }
+    }
+    all
+}
+
+/// A stretch cut into blocks of one length, which are counted from a time; what is left at its ends is none.
+fn blocks(time_s: &[f64], stretch: Range<usize>, start_s: f64, block_s: f64) -> Vec<Block> {
+    let block_of = |sample: usize| ((time_s[sample] - start_s) / block_s + 1e-9).floor();
     let mut blocks: Vec<Block> = Vec::new();
-    for sample in 0..time_s.len() {
+    for sample in stretch.clone() {
         let block = block_of(sample);
         match blocks.last_mut() {
             Some((number, _, end)) if *number == block => *end = sample + 1,
             _ => blocks.push((block, sample, sample + 1)),
         }
     }
-    let blocks = without_pieces(&blocks);
-    for pair in blocks.windows(2) {
-        let ((one, from, middle), (two, _, to)) = (pair[0], pair[1]);
-        let whole = (from..to).all(|sample| usable[sample]);
-        if two - one > 1.5 || !whole {
-            close(&mut open);
-            continue;
-        }
-        // The slope is that between the blocks' means, so the hat stands half way between them.
-        let mean_s = |samples: &[f64]| samples.iter().sum::<f64>() / samples.len() as f64;
-        let edge_s = 0.5 * (mean_s(&time_s[from..middle]) + mean_s(&time_s[middle..to]));
-        let hat = |sample: usize| (1.0 - (time_s[sample] - edge_s).abs() / block_s).max(1e-3);
-        let sum: f64 = (from..to).map(hat).sum();
-        open.push(Row {
-            samples: [from, middle, to],
-            weights: (from..to).map(|sample| hat(sample) / sum).collect(),
-            time_s: edge_s,
-        });
+    let cut = |last: &Block| stretch.end < time_s.len() && block_of(stretch.end) == last.0;
+    if blocks.last().is_some_and(cut) {
+        blocks.pop();
     }
-    close(&mut open);
-    chunks
+    if stretch.start > 0 && blocks.first().is_some_and(|first| block_of(stretch.start - 1) == first.0) {
+        blocks.remove(0);
+    }
+    without_pieces(&blocks)
+}
+
+/// The row of two blocks.
+fn row(time_s: &[f64], samples: [usize; 3], block_s: f64) -> Row {
+    let [from, middle, to] = samples;
+    // The slope is that between the blocks' means, so the hat stands half way between them.
+    let mean_s = |samples: &[f64]| samples.iter().sum::<f64>() / samples.len() as f64;
+    let edge_s = 0.5 * (mean_s(&time_s[from..middle]) + mean_s(&time_s[middle..to]));
+    let hat = |sample: usize| (1.0 - (time_s[sample] - edge_s).abs() / block_s).max(1e-3);
+    let sum: f64 = (from..to).map(hat).sum();
+    Row { samples, weights: (from..to).map(|sample| hat(sample) / sum).collect(), time_s: edge_s }
 }
 
 /// Blocks without those beside a gap or at an end that hold few samples: their means are noisier than the others', and no
@@ -130,6 +161,17 @@ mod tests {
             let middle = row.slope(&time_s, &speed);
             assert!((middle - row.mean(&force)).abs() < 1e-9, "{middle} against {}", row.mean(&force));
         }
+    }
+
+    /// Twenty samples between two brakes are four blocks of five, wherever they begin.
+    #[test]
+    fn a_short_stretch_is_cut_from_its_begin() {
+        let time_s: Vec<f64> = (0..100).map(|index| 0.1 * f64::from(index)).collect();
+        let usable: Vec<bool> = (0..100).map(|index| index < 3 || (7..29).contains(&index)).collect();
+        let chunks = chunks(0, 0, &time_s, &usable, 0.5);
+        let samples: Vec<[usize; 3]> = chunks[0].rows.iter().map(|row| row.samples).collect();
+        assert_eq!((chunks.len(), samples), (1, vec![[7, 12, 17], [12, 17, 22], [17, 22, 27]]));
+        assert!(super::chunks(0, 0, &time_s, &[false; 100], 0.5).is_empty());
     }
 
     #[test]

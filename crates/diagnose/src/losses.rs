@@ -1,9 +1,10 @@
-//! What every electric drive does beside a single efficiency: losses that go with the square of force or of speed, and a
-//! current that is measured a moment earlier or later than the torque. They are small, nobody would call them missing
+//! What every electric drive does beside a single efficiency: losses that go with products of powers of force and speed, and
+//! a current that is measured a moment earlier or later than the torque. They are small, nobody would call them missing
 //! physics, and a consumer that is switched must not have to explain them; so they are free in every battery balance.
 //!
 //! Source of the terms: Guzzella and Sciarretta, *Vehicle Propulsion Systems* (2013), section 4.3: copper losses with the
-//! square of the torque, iron and windage losses with speed.
+//! square of the torque, iron and windage losses with speed; Mahmoudi, Soong, Pellegrino and Armando, *IEEE ECCE* (2015) 2791,
+//! for loss maps as sums of k Tᵐ ωⁿ, those of the inverter and of a weakened field among them.
 
 use crate::Case;
 use crate::balance::{FUEL_J_KG, Kind, System, longest_renewal_s};
@@ -45,7 +46,10 @@ pub fn small_losses(case: &Case, system: &System) -> Vec<Small> {
         of("battery_lag", &late, Some(longest_renewal_s(&case.runs, "battery_power_w"))),
         of("battery_force_squared", &|run| products(run, |force, _| force * force), None),
         of(SPEED_SQUARED, &|run| products(run, |_, speed| speed * speed), None),
+        of("battery_force_size", &|run| products(run, |force, _| force.abs()), None),
         of("battery_power_size", &|run| products(run, |force, speed| (force * speed).abs()), None),
+        of("battery_power_speed", &|run| products(run, |force, speed| (force * speed).abs() * speed), None),
+        of("battery_power_force", &|run| products(run, |force, speed| force * force * speed), None),
     ];
     smalls.into_iter().filter(|small| small.sd.is_finite() && small.sd > 0.0).collect()
 }

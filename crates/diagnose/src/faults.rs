@@ -1,5 +1,6 @@
 //! Faults that a channel shows by itself: a value that sticks, steps that are too coarse, samples that are lost.
 
+use crate::filled::filled;
 use crate::recorded::Recorded;
 use crate::report::Interval;
 use headland_calibrate::statistics::{quantile_of_sorted, sorted};
@@ -79,6 +80,7 @@ pub fn faults(drives: &[Recorded]) -> (Vec<Fault>, Vec<Vec<bool>>) {
         all.extend(nought(drives, name, &mut usable));
     }
     all.extend(lost(drives));
+    all.extend(filled(drives, &mut usable));
     (all, usable)
 }
 

@@ -26,6 +26,7 @@ mod events;
 mod exchange;
 mod experiment;
 mod faults;
+mod filled;
 mod foreseen;
 mod formula;
 mod gram;

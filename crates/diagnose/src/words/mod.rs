@@ -153,6 +153,11 @@ pub fn fault(fault: &crate::faults::Fault) -> String {
                 quantity(fault.size, &fault.unit)
             )
         }
+        "dropout" if fault.unit == "s" => format!(
+            "All channels run along straight lines for {} in all: a gap of the log that was filled; those samples were left \
+             out.",
+            quantity(fault.size, "s")
+        ),
         "dropout" if fault.channel != "time_s" => {
             format!("{channel} is missing in {:.1} % of its samples.", 100.0 * fault.size)
         }

@@ -16,6 +16,7 @@ use headland_calibrate::study::Study;
 use headland_plugin::{Contact, Registry, closest};
 use headland_recording::Recording;
 use headland_scenario::Scenario;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// What the user wants of a diagnosis.
@@ -70,6 +71,8 @@ pub(crate) struct Case<'a> {
     pub corrections: Vec<Correction>,
     /// Faults that turned out to be too small for anybody to mind.
     pub petty: Vec<&'static str>,
+    /// The causes that are tried, where it is not all of them.
+    pub only: Option<BTreeSet<usize>>,
     /// Names of the paths, by the number that the runs have of them; none where a run drove alone.
     pub paths: Vec<Option<String>>,
     /// What the nominal model says.
@@ -122,6 +125,7 @@ impl<'a> Case<'a> {
             runs,
             corrections: Vec::new(),
             petty: Vec::new(),
+            only: None,
             paths,
             nominal: Vec::new(),
             rows: Rows::Few,

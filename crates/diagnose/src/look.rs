@@ -2,11 +2,13 @@
 
 use crate::balance::{Kind, Rows, System};
 use crate::case::Correction;
+use crate::catalogue::Form;
 use crate::contest::Contest;
 use crate::search::{Accepted, Found, LEAST_GAIN, MOST_CAUSES, PER_CAUSE, search, search_without, worth};
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Trial, add_trial, pool};
 use crate::{Case, DiagnoseError, bend, sensors, sharpen, straying};
+use std::collections::BTreeSet;
 
 /// A search from nothing takes long with more rows than this; what was found before is then where the next one starts.
 pub const MANY_ROWS: usize = 12_000;
@@ -45,18 +47,30 @@ impl Look {
     }
 
     /// Takes the faults of sensors that were found out of the recordings, and what else was found into the model, and looks
-    /// again, until neither changes.
+    /// again, until neither changes. In long recordings only what was found and the faults are tried meanwhile, and then all
+    /// once more.
     pub fn sensors_first(&mut self, case: &mut Case) -> Result<(), DiagnoseError> {
         /// A fault that is not linear takes some rounds.
         const ROUNDS: usize = 6;
         /// What was found is then known well enough for regressors.
         const BUILDS: usize = 2;
+        let many = self.system.row_count() > MANY_ROWS;
+        let mut rests = Rests::default();
+        let mut found: BTreeSet<usize> = BTreeSet::new();
         for round in 0..ROUNDS {
+            found.extend(self.found.accepted.iter().map(|accepted| accepted.trial.cause));
             let built = round < BUILDS && case.build_on(&self.pool, &self.found)?;
-            let corrected = self.correct(case)?;
+            let corrected = self.correct(case, &mut rests)?;
             if !built && !corrected {
                 break;
             }
+            let measured = |cause: &usize| case.causes[*cause].form == Form::Measured;
+            let faults = (0..case.causes.len()).filter(measured);
+            case.only = many.then(|| found.iter().copied().chain(faults).collect());
+            let usable = self.usable.clone();
+            self.again(case, &usable)?;
+        }
+        if case.only.take().is_some() {
             let usable = self.usable.clone();
             self.again(case, &usable)?;
         }
@@ -64,7 +78,7 @@ impl Look {
     }
 
     /// Takes faults of sensors out of the recordings. Whether there were any.
-    fn correct(&self, case: &mut Case) -> Result<bool, DiagnoseError> {
+    fn correct(&self, case: &mut Case, rests: &mut Rests) -> Result<bool, DiagnoseError> {
         /// A rest that is this share of the fault, or this share of its usual size, is none.
         const NEARLY: f64 = 0.1;
         let mut corrections = case.corrections.clone();
@@ -74,7 +88,7 @@ impl Look {
             let rest = column.map_or(0.0, |(_, column)| self.found.estimate.beta[*column]);
             let usual = case.causes[correction.accepted.trial.cause].terms[0].scale;
             more |= rest.abs() > NEARLY * correction.value.abs().max(usual);
-            correction.value += rest;
+            correction.value = rests.next(correction.id, correction.value, rest);
         }
         for accepted in &self.found.accepted {
             let id = case.causes[accepted.trial.cause].id;
@@ -82,7 +96,7 @@ impl Look {
             if let (true, Some(position)) =
                 (["latency", "clock_drift", "speed_scale", "force_scale"].contains(&id), position)
             {
-                let value = self.found.estimate.beta[position];
+                let value = rests.next(id, 0.0, self.found.estimate.beta[position]);
                 corrections.push(Correction { id, value, accepted: accepted.clone() });
                 more = true;
             }
@@ -169,6 +183,25 @@ impl Look {
         };
         let found = straying::straying(case, &system, &pool, self.found, Some(stands));
         Ok((system, pool, found))
+    }
+}
+
+/// What was left of each fault at the value that it was corrected by last.
+#[derive(Default)]
+struct Rests(Vec<(&'static str, f64, f64)>);
+
+impl Rests {
+    /// The value to correct by next, where `rest` is left of a fault after it was corrected by `value`: that and the rest, or
+    /// where a straight line says that nothing is left, once a correction went too far. What is estimated beside a fault moves
+    /// with it, so that a rest may be told twice as large as it is, and the sum of both would go to and fro.
+    /// Source: the rule of false position; Press et al., *Numerical Recipes* (2007), section 9.2.
+    fn next(&mut self, id: &'static str, value: f64, rest: f64) -> f64 {
+        let last = self.0.iter().position(|one| one.0 == id).map(|place| self.0.remove(place));
+        self.0.push((id, value, rest));
+        match last {
+            Some((_, before, left)) if left * rest < 0.0 => value - rest * (value - before) / (rest - left),
+            _ => value + rest,
+        }
     }
 }
 
@@ -260,5 +293,23 @@ impl State<'_> {
             best = next.stand;
         }
         self.conclude(best, first, (before.tried.clone(), Vec::new()), needed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Rests;
+
+    /// Told twice as large: 0.06, then −0.06 too much, and so on; the line through the first two meets it.
+    #[test]
+    fn a_rest_that_is_told_too_large_does_not_go_to_and_fro() {
+        let rest = |value: f64| 2.0 * (0.03 - value);
+        let mut rests = Rests::default();
+        let first = rests.next("force_scale", 0.0, rest(0.0));
+        let other = rests.next("speed_scale", 0.0, 0.5);
+        let second = rests.next("force_scale", first, rest(first));
+        assert!((first - 0.06).abs() < 1e-12 && (second - 0.03).abs() < 1e-12, "{first}, {second}");
+        // A rest on the same side is what is still missing.
+        assert!((rests.next("speed_scale", other, 0.1) - 0.6).abs() < 1e-12);
     }
 }

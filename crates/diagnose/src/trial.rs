@@ -98,7 +98,8 @@ pub fn pool(case: &Case, system: &System) -> Result<Pool, DiagnoseError> {
     for (number, cause) in case.causes.iter().enumerate() {
         case.step(cause.id)?;
         let corrected = case.corrections.iter().any(|correction| correction.id == cause.id);
-        if corrected || case.petty.contains(&cause.id) {
+        let out = case.only.as_ref().is_some_and(|only| !only.contains(&number));
+        if out || corrected || case.petty.contains(&cause.id) {
             continue;
         }
         for shape in &cause.shapes {

@@ -89,6 +89,7 @@ impl<'a> Stage<'a> {
             runs,
             corrections: case.corrections.clone(),
             petty: case.petty.clone(),
+            only: None,
             nominal: Vec::new(),
             rows: case.rows,
             so_far: None,

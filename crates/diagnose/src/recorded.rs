@@ -181,6 +181,12 @@ impl Recorded {
     }
 }
 
+/// Whether any two of the runs that are fitted drove the same path.
+pub fn share_paths(runs: &[Recorded], fit: &[bool]) -> bool {
+    let fitted = || runs.iter().zip(fit).enumerate().filter(|(_, (_, fit))| **fit);
+    fitted().any(|(one, (run, _))| fitted().any(|(two, (other, _))| two < one && run.path == other.path))
+}
+
 /// The force at the wheels that a recording knows, with a model whose driveline makes it of a torque.
 pub fn force(trace: &Trace, model: &Model, speed: &[f64]) -> Option<Vec<f64>> {
     let torque = trace.get("motor_torque_n_m").or_else(|| trace.get("engine_torque_n_m"));

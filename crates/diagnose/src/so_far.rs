@@ -1,9 +1,12 @@
 //! What was found so far, as part of the model that regressors are made with. Slopes and winds accelerate too, and weight
 //! acts on a slope as well: what is in proportion to mass or acceleration is only told rightly beside them.
+//!
+//! A map of a path that one run drove alone tells how that run accelerates, and no more: a mass that pushed on its slopes would
+//! take its whole shape up again at the cost of one number.
 
-use crate::catalogue::Class;
+use crate::catalogue::{Class, Form};
 use crate::prove::text;
-use crate::recorded::Recorded;
+use crate::recorded::{Recorded, share_paths};
 use crate::refine::{Cured, Refined, plain};
 use crate::said::{Said, said};
 use crate::search::Found;
@@ -24,7 +27,8 @@ type Known = Vec<(Vec<String>, Vec<Arc<dyn Effect>>)>;
 
 /// Effects of each run, and what the model with them says.
 pub struct SoFar {
-    effects: Effects,
+    /// Those that tell how the runs accelerate, and those that regressors are made beside.
+    effects: [Effects; 2],
     /// The free parameters beside them.
     values: Vec<f64>,
     said: Vec<Said>,
@@ -60,7 +64,10 @@ impl Case<'_> {
             return Ok(false);
         }
         let refined = plain(self, pool, found);
-        let so_far = self.so_far_of(effects(self, &refined)?, refined.values())?;
+        let shared = share_paths(&self.runs, &self.fit);
+        let shown = |cured: &Cured| shared || cured.cause.form != Form::OverPosition;
+        let both = [effects(self, &refined, &|_| true)?, effects(self, &refined, &shown)?];
+        let so_far = self.so_far_of(both, refined.values())?;
         let (mut changed, mut all) = (0.0, 0.0);
         for (run, after) in self.runs.iter().zip(&so_far.accelerations_m_s2) {
             for (before, after) in run.acceleration_m_s2.iter().zip(after) {
@@ -98,15 +105,15 @@ impl Case<'_> {
         self.so_far = Some(so_far);
     }
 
-    fn so_far_of(&self, effects: Effects, values: Vec<f64>) -> Result<SoFar, DiagnoseError> {
-        let with = |values: &[f64]| {
+    fn so_far_of(&self, effects: [Effects; 2], values: Vec<f64>) -> Result<SoFar, DiagnoseError> {
+        let with = |effects: &Effects, values: &[f64]| {
             said(&self.runs, &self.kinds, |run| {
                 let model = self.study.model_of(self.study.scenario(), &self.runs[run].measured, values)?;
                 Ok(beside(model, &effects[run]))
             })
         };
         // The vehicle as it was found tells how it accelerates, the nominal one what a regressor changes.
-        let (told, said) = (with(&values)?, with(&self.study.priors())?);
+        let (told, said) = (with(&effects[0], &values)?, with(&effects[1], &self.study.priors())?);
         let accelerated = |(run, said): (&Recorded, &Said)| {
             run.accelerated_m_s2(&said.resistance_n, &said.effective_mass_kg)
         };
@@ -128,7 +135,7 @@ impl Case<'_> {
     ) -> Result<Model, DiagnoseError> {
         let model = self.study.model_of(scenario, &self.runs[run].measured, values)?;
         Ok(match &self.so_far {
-            Some(so_far) => beside(model, &so_far.effects[run]),
+            Some(so_far) => beside(model, &so_far.effects[1][run]),
             None => model,
         })
     }
@@ -142,11 +149,15 @@ fn beside(mut model: Model, effects: &[Arc<dyn Effect>]) -> Model {
     model
 }
 
-/// The effects that were found, run by run; runs with the same ones share them.
-fn effects(case: &Case, refined: &Refined) -> Result<Effects, DiagnoseError> {
+/// The effects that were found and are `wanted`, run by run; runs with the same ones share them.
+fn effects(
+    case: &Case,
+    refined: &Refined,
+    wanted: &dyn Fn(&Cured) -> bool,
+) -> Result<Effects, DiagnoseError> {
     let mut known: Known = Vec::new();
-    let physics: Vec<_> =
-        refined.causes.iter().filter(|cured| cured.cause.class == Class::Physics).map(Cured::along).collect();
+    let physics = refined.causes.iter().filter(|cured| cured.cause.class == Class::Physics && wanted(cured));
+    let physics: Vec<_> = physics.map(Cured::along).collect();
     let mut all = Vec::new();
     for run in 0..case.runs.len() {
         let texts: Vec<String> = physics.iter().filter_map(|cured| text(case, cured, run)).collect();

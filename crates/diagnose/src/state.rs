@@ -8,6 +8,7 @@ use crate::gram::{Column, Estimate, Reduced, Whitened};
 use crate::look::MANY_ROWS;
 use crate::noise::Noises;
 use crate::profile::{Function, Profile, Spread, Widths};
+use crate::recorded::share_paths;
 use crate::rivals::twin;
 use crate::trial::{Pool, Trial};
 use nalgebra::DVector;
@@ -201,9 +202,7 @@ impl<'a> State<'a> {
 
     /// Whether any two fitted runs drove the same path.
     pub fn paths_shared(&self) -> bool {
-        let fitted = || (0..self.fit.len()).filter(|run| self.fit[*run]);
-        let path = |run: usize| self.case.runs[run].path;
-        fitted().any(|run| fitted().any(|other| other < run && path(other) == path(run)))
+        share_paths(&self.case.runs, self.fit)
     }
 
     /// All columns and the residual, multiplied at a noise, with the functions of a set eliminated.

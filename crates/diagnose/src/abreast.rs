@@ -205,6 +205,7 @@ mod tests {
             .map(|(signature, at)| Profile {
                 signature,
                 extents: vec![(at[0].min(), at[0].max())],
+                rows: vec![ROWS],
                 at,
                 group_of: vec![0],
             })
@@ -253,6 +254,7 @@ mod tests {
             at: column(|row| row),
             group_of: vec![0],
             extents: vec![(0.0, 13.0)],
+            rows: vec![ROWS],
         };
         assert!(Abreast::of(&[(&profile, &spread); MOST]).is_some());
         assert!(Abreast::of(&[(&profile, &spread); MOST + 1]).is_none());

@@ -50,6 +50,8 @@ pub struct Profile<'a> {
     pub group_of: Vec<usize>,
     /// Least and greatest `at` of each group.
     pub extents: Vec<(f64, f64)>,
+    /// How many rows each group has.
+    pub rows: Vec<usize>,
 }
 
 /// Whether it is asked how well a function is known at its knots, which takes longer than the function.
@@ -79,7 +81,7 @@ const MOST_KNOTS: f64 = 1500.0;
 /// Knots to one length of the process, enough to find it.
 pub const COARSE: f64 = 2.0;
 /// Enough to draw it: the process is rough within its length.
-pub const FINE: f64 = 8.0;
+pub const FINE: f64 = 40.0;
 
 impl<'a> Profile<'a> {
     /// A function of the position or of time, with what a parameter of one does to each row.
@@ -89,6 +91,7 @@ impl<'a> Profile<'a> {
             if over_position { runs.iter().map(|run| run.path).collect() } else { (0..runs.len()).collect() };
         let groups = group_of.iter().max().map_or(0, |most| most + 1);
         let mut extents = vec![(f64::INFINITY, f64::NEG_INFINITY); groups];
+        let mut rows = vec![0; groups];
         let of_chunk = |chunk: &Chunk| {
             let place = |row: &Row| {
                 let at = if over_position { row.mean(&runs[chunk.run].position_m) } else { row.time_s };
@@ -97,6 +100,7 @@ impl<'a> Profile<'a> {
             let at = DVector::from_iterator(chunk.rows.len(), chunk.rows.iter().map(place));
             let extent = &mut extents[group_of[chunk.run]];
             *extent = (extent.0.min(at.min()), extent.1.max(at.max()));
+            rows[group_of[chunk.run]] += chunk.rows.len();
             at
         };
         let at: Column = system.chunks.iter().map(of_chunk).collect();
@@ -105,7 +109,7 @@ impl<'a> Profile<'a> {
                 *extent = (0.0, 1.0);
             }
         }
-        Self { signature, at, group_of, extents }
+        Self { signature, at, group_of, extents, rows }
     }
 
     /// What the function does to every row.
@@ -137,11 +141,13 @@ impl<'a> Profile<'a> {
     pub fn groups(&self, spread: &Spread) -> Vec<Group> {
         self.extents
             .iter()
-            .map(|(from, to)| {
+            .zip(&self.rows)
+            .map(|((from, to), rows)| {
                 let range = (to - from).max(1e-9);
                 let wanted =
                     spread.jumps.as_ref().map_or(spread.length / spread.knots_per_length, |jumps| jumps.step);
-                let step = wanted.max(range / MOST_KNOTS);
+                // Between two rows nothing is told.
+                let step = wanted.max(range / MOST_KNOTS.min((*rows).max(1) as f64));
                 // Between 2 and some hundreds.
                 #[allow(
                     clippy::cast_possible_truncation,

@@ -280,19 +280,25 @@ fn name(runs: &[Recorded], event: &Event) -> &'static str {
     if slowing && driven < 0.25 * event.force_n { "braking" } else { "drawbar_load" }
 }
 
-/// Spells by what they are called. Few of the one kind among many of the other are of the same kind.
+/// Spells by what they are called. Few of the one kind among many of the other are of the same kind, and no implement is let
+/// down and lifted again at once.
 pub fn named(runs: &[Recorded], events: &[Event]) -> Vec<(&'static str, Vec<Event>)> {
     /// Fewer than this share are few.
     const FEW: f64 = 0.25;
-    let (braked, pulled): (Vec<Event>, Vec<Event>) =
+    /// A pull lasts longer than this [s].
+    const AT_ONCE_S: f64 = 3.0;
+    let (braked, mut pulled): (Vec<Event>, Vec<Event>) =
         events.iter().cloned().partition(|event| name(runs, event) == "braking");
+    pulled.retain(|event| event.to_s - event.from_s > AT_ONCE_S);
+    let events: Vec<Event> =
+        events.iter().filter(|event| braked.contains(event) || pulled.contains(event)).cloned().collect();
     let few = |one: &[Event]| (one.len() as f64) < FEW * events.len() as f64;
     if events.is_empty() {
         Vec::new()
     } else if few(&pulled) {
-        vec![("braking", events.to_vec())]
+        vec![("braking", events)]
     } else if few(&braked) {
-        vec![("drawbar_load", events.to_vec())]
+        vec![("drawbar_load", events)]
     } else {
         vec![("braking", braked), ("drawbar_load", pulled)]
     }

@@ -255,7 +255,8 @@ fn a_map_that_does_not_help_the_run_that_was_held_out_is_not_claimed() {
     const LEVEL: f64 = 0.08;
     let patch = "soft_ground(positions_m: [30.0, 45.0, 60.0], coefficients: [0.03, 0.02])";
     let (mut recording, dry) = (recorded(LEVEL, patch), recorded(LEVEL, ""));
-    assert!(named(&found(&recording, &Options::default()).unwrap(), "soft_ground"));
+    let shown = found(&recording, &Options::default()).unwrap();
+    assert!(named(&shown, "soft_ground"), "{}", shown.diagnosis.answer);
     let held_out = recording.runs.iter().position(|run| run.held_out).unwrap();
     recording.runs[held_out] = dry.runs[held_out].clone();
     let found = found(&recording, &Options::default()).unwrap();

@@ -154,9 +154,9 @@ mod tests {
             let (time_s, mut channels) = wave(noise);
             for (values, (_, step)) in channels.iter_mut().zip(WAVES) {
                 let (first, last) = (values[200], values[320]);
-                for index in 200..=320 {
-                    let value = first + (last - first) * (index - 200) as f64 / 120.0;
-                    values[index] = (value / step).round() * step;
+                for (place, value) in values[200..=320].iter_mut().enumerate() {
+                    let straight = first + (last - first) * place as f64 / 120.0;
+                    *value = (straight / step).round() * step;
                 }
             }
             let gaps = found(&time_s, &channels);

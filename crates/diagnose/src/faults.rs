@@ -52,7 +52,7 @@ const BUS: f64 = 0.025;
 const SLOWEST_M_S: f64 = 0.5;
 
 /// The channels that are looked at; of a battery's current only whether it sticks.
-const LOOKED_AT: [&str; 6] = [
+pub const LOOKED_AT: [&str; 6] = [
     "speed_m_s",
     "wheel_speed_m_s",
     "tractive_force_n",
@@ -90,7 +90,8 @@ fn own<'a>(drive: &'a Recorded, name: &str) -> Option<&'a [f64]> {
     drive.measured.trace.get(name).filter(|_| !other)
 }
 
-fn place(drive: &Recorded, from: usize, to: usize) -> Interval {
+/// Where samples of a run lie.
+pub fn place(drive: &Recorded, from: usize, to: usize) -> Interval {
     let time_s = drive.measured.trace.time_s();
     Interval {
         run: drive.measured.id.clone(),

@@ -1,8 +1,7 @@
 //! Gaps of a log that somebody filled with straight lines: every channel runs along its chord, as no driver and no sensor does.
 
-use crate::faults::Fault;
+use crate::faults::{Fault, LOOKED_AT, place};
 use crate::recorded::Recorded;
-use crate::report::Interval;
 use headland_calibrate::statistics::{median, sorted};
 
 /// Shorter straight lines are no gap: so long [s], and so many samples.
@@ -20,19 +19,8 @@ const FEWEST: usize = 3;
 /// What is lost in all, as a share of the time, that matters.
 const LOST: f64 = 1e-3;
 
-/// Channels that sensors measure; what is made of others bends where they do not.
-const MEASURED: [&str; 10] = [
-    "speed_m_s",
-    "wheel_speed_m_s",
-    "tractive_force_n",
-    "specific_force_m_s2",
-    "motor_torque_n_m",
-    "engine_torque_n_m",
-    "engine_speed_rad_s",
-    "battery_voltage_v",
-    "battery_current_a",
-    "throttle",
-];
+/// Channels that sensors measure, beside those in which faults are looked for; what is made of others bends where they do not.
+const BESIDE: [&str; 4] = ["engine_speed_rad_s", "battery_voltage_v", "battery_current_a", "throttle"];
 
 /// A channel of a run, and what is usual of it.
 struct Channel<'a> {
@@ -83,17 +71,15 @@ pub fn filled(drives: &[Recorded], usable: &mut [Vec<bool>]) -> Option<Fault> {
         let trace = &drive.measured.trace;
         let time_s = trace.time_s();
         whole_s += trace.duration_s();
-        let channels = MEASURED.iter().filter_map(|name| Channel::of(trace.get(name)?)).collect::<Vec<_>>();
+        let channels = LOOKED_AT
+            .iter()
+            .chain(&BESIDE)
+            .filter_map(|name| Channel::of(trace.get(name)?))
+            .collect::<Vec<_>>();
         for (from, to) in straight(time_s, &channels) {
             usable[from..=to].fill(false);
             lost_s += time_s[to] - time_s[from];
-            stretches.push(Interval {
-                run: drive.measured.id.clone(),
-                from_s: time_s[from],
-                to_s: time_s[to],
-                from_position_m: drive.position_m[from],
-                to_position_m: drive.position_m[to],
-            });
+            stretches.push(place(drive, from, to));
         }
     }
     (lost_s > LOST * whole_s).then(|| Fault {

@@ -81,7 +81,9 @@ const MOST_KNOTS: f64 = 1500.0;
 /// Knots to one length of the process, enough to find it.
 pub const COARSE: f64 = 2.0;
 /// Enough to draw it: the process is rough within its length.
-pub const FINE: f64 = 40.0;
+pub const FINE: f64 = 8.0;
+/// The same of a function of time, which is switched at once, where no road climbs at once.
+pub const FINE_IN_TIME: f64 = 40.0;
 
 impl<'a> Profile<'a> {
     /// A function of the position or of time, with what a parameter of one does to each row.

@@ -4,9 +4,10 @@
 //! This comes last, where the causes that every row asks for are known: a spell of something that is really there is strange
 //! as well, and would be passed over.
 
+use crate::catalogue::Form;
 use crate::contest::Contest;
 use crate::noise::Noises;
-use crate::profile::{FINE, Function};
+use crate::profile::{FINE, FINE_IN_TIME, Function};
 use crate::search::{Found, LEAST_GAIN, MOST_CAUSES, PER_CAUSE};
 use crate::state::{Part, Stand, State};
 use crate::tails::Tails;
@@ -102,7 +103,9 @@ impl State<'_> {
             let part = Part { spread: None, ..others.remove(place) };
             if parts[place].spread.as_ref().is_some_and(|spread| spread.jumps.is_none()) {
                 let beside = Stand { parts: others, ..stand.clone() };
-                let spread = self.best_spread(&part, &beside, noises, FINE);
+                let in_time = self.cause(&part.trial).form == Form::OverTime;
+                let fine = if in_time { FINE_IN_TIME } else { FINE };
+                let spread = self.best_spread(&part, &beside, noises, fine);
                 parts[place].spread = spread.or(parts[place].spread.clone());
             }
         }

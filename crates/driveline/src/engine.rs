@@ -356,20 +356,30 @@ impl Engine {
 
     /// The speed that the controller chooses for a power beside accessories.
     pub(crate) fn speed_rad_s(&self, net_w: f64, at: &Circumstance) -> f64 {
-        if at.hand_rad_s > 0.0 {
-            let load = net_w / (self.curve.torque(at.hand_rad_s) * at.hand_rad_s);
-            let speed = at.hand_rad_s * (1.0 + self.droop * (1.0 - load.clamp(0.0, 1.0)));
-            return speed.min(self.curve.last_speed().max(at.hand_rad_s));
-        }
-        let takes = |speed: f64| self.friction_w(speed, at.friction_n_m) + self.accessories_w(speed);
+        self.speeds_rad_s(at)(net_w)
+    }
+
+    /// The same for many powers: what does not hang on them is worked out once.
+    #[inline]
+    pub(crate) fn speeds_rad_s(&self, at: &Circumstance) -> impl Fn(f64) -> f64 {
+        let Circumstance { hand_rad_s, friction_n_m, boost } = *at;
+        let takes = move |speed: f64| self.friction_w(speed, friction_n_m) + self.accessories_w(speed);
         let (idle, last) = (self.idle_speed_rad_s, self.curve.last_speed());
-        if net_w + takes(idle) < 0.0 {
-            return crossing(last, idle, |speed| -net_w - takes(speed));
-        }
-        let share = self.load_share.min(self.limit(at.boost));
+        let idle_w = takes(idle);
+        let share = self.load_share.min(self.limit(boost));
         let fan =
             if self.fan_power_w == 0.0 { 0.0 } else { self.fan_power_w / self.curve.peak_speed().powi(3) };
-        self.curve.speed_for(share, [self.accessory_power_w + net_w, self.pump_torque_n_m, fan])
+        move |net_w| {
+            if hand_rad_s > 0.0 {
+                let load = net_w / (self.curve.torque(hand_rad_s) * hand_rad_s);
+                let speed = hand_rad_s * (1.0 + self.droop * (1.0 - load.clamp(0.0, 1.0)));
+                return speed.min(last.max(hand_rad_s));
+            }
+            if net_w + idle_w < 0.0 {
+                return crossing(last, idle, |speed| -net_w - takes(speed));
+            }
+            self.curve.speed_for(share, [self.accessory_power_w + net_w, self.pump_torque_n_m, fan])
+        }
     }
 
     /// What it does to give a power beside accessories at a speed.

@@ -102,9 +102,9 @@ pub(crate) trait Topology: Debug + Send + Sync {
     fn most_force_n(&self, asked: &Asked) -> (f64, f64);
     /// What flows for a force in the direction of driving; `engine_w` is `None` where the engine stands still.
     fn flow(&self, asked: &Asked, force_n: f64, engine_w: Option<f64>) -> Flow;
-    /// Of that, what the machines take from the store while the engine runs [W].
-    fn bus_w(&self, asked: &Asked, force_n: f64, engine_w: f64) -> f64 {
-        self.flow(asked, force_n, Some(engine_w)).bus_w
+    /// Of that, what the machines take from the store for a power of the running engine [W].
+    fn bus_w(&self, asked: &Asked, force_n: f64) -> impl Fn(f64) -> f64 {
+        move |engine_w| self.flow(asked, force_n, Some(engine_w)).bus_w
     }
     /// Changes its own states between two steps.
     fn choose(&self, asked: &Asked, flow: &Flow, own: &mut [f64]) -> bool {
@@ -158,9 +158,9 @@ const MOTOR_C: usize = 6;
 const OWN: usize = 7;
 
 /// A store that gives or takes less than this part of what the engine gives is left alone.
-const ALONE: f64 = 1e-9;
-/// From as near as this the next step of a search leads nearer than that.
-const NEARLY_ALONE: f64 = 1e-6;
+const ALONE: f64 = 1e-6;
+/// From as near as this one more step of a search leads to a ten-thousandth at most, and mostly far nearer.
+const NEARLY_ALONE: f64 = 1e-3;
 
 /// At rest a force that misses is weighed as if the vehicle crept [m/s]: no power tells of it.
 const CREEP_M_S: f64 = 0.5;
@@ -171,6 +171,29 @@ struct Solved {
     engine_w: f64,
     flow: Flow,
     drawn: Drawn,
+}
+
+/// What engine and store can [W].
+#[expect(clippy::struct_field_names, reason = "each name ends in its unit")]
+struct Limits {
+    most_out_w: f64,
+    most_in_w: f64,
+    /// What other consumers take.
+    others_w: f64,
+    least_w: f64,
+    most_w: f64,
+}
+
+impl Limits {
+    /// By how much more is asked of machines or store than they can.
+    fn too_much_w(&self, flow: &Flow) -> f64 {
+        flow.asked_w.max(flow.bus_w + self.others_w - self.most_out_w)
+    }
+
+    /// By how much more is pushed into them.
+    fn pushed_w(&self, flow: &Flow) -> f64 {
+        flow.pushed_w.max(-flow.bus_w - self.others_w - self.most_in_w)
+    }
 }
 
 #[allow(private_bounds, reason = "the topologies are those of this crate")]
@@ -206,51 +229,67 @@ impl<T: Topology> Managed<T> {
         (asked.demand.force_n * Self::way(asked.demand)).clamp(-brakes, drives)
     }
 
-    /// Departs from a share as little as the limits ask.
+    /// What comes of a share, from which it departs as little as the limits ask.
     fn solve(&self, demand: &Demand, states: &[f64], share: Share) -> Solved {
         let asked = Self::asked(demand, states);
         let (engine, store) = (self.topology.engine(), self.topology.store());
-        let (most_out, most_in) = store.most_w(states[CHARGE], demand.battery_resistance_ohm);
-        let others = self.topology.consumers().total_w(demand);
+        let behind = store.behind(states[CHARGE], demand.battery_resistance_ohm);
+        let (most_out_w, most_in_w) = store.most_behind_w(states[CHARGE], behind);
+        let others_w = self.topology.consumers().total_w(demand);
         // Of one that stands still nobody asks what it could give.
-        let (least, most) = if share.engine_runs {
+        let (least_w, most_w) = if share.engine_runs {
             (engine.least_w(&asked.at), engine.most_w(&asked.at))
         } else {
             (0.0, 0.0)
         };
-        let power = |engine_w: f64| share.engine_runs.then_some(engine_w);
-        let flow = |force: f64, engine_w: f64| self.topology.flow(&asked, force, power(engine_w));
-        let too_much = |flow: &Flow| flow.asked_w.max(flow.bus_w + others - most_out);
-        let pushed = |flow: &Flow| flow.pushed_w.max(-flow.bus_w - others - most_in);
-
+        let limits = Limits { most_out_w, most_in_w, others_w, least_w, most_w };
         let mut force = self.wanted_n(&asked);
-        let mut engine_w = share.engine_w.clamp(least.min(most), most);
-        let mut found = flow(force, engine_w);
-        if too_much(&found) > 0.0 {
-            if share.engine_runs {
-                engine_w = crossing(engine_w, most, |engine_w| -too_much(&flow(force, engine_w)));
-                found = flow(force, engine_w);
+        let mut engine_w = share.engine_w.clamp(least_w.min(most_w), most_w);
+        let mut flow = self.topology.flow(&asked, force, share.engine_runs.then_some(engine_w));
+        if limits.too_much_w(&flow) > 0.0 || limits.pushed_w(&flow) > 0.0 {
+            (force, engine_w, flow) = self.within(&limits, &asked, share.engine_runs, force, engine_w);
+        }
+        let drawn = store.draw_behind(flow.bus_w + others_w, behind);
+        Solved { force, engine_w: if share.engine_runs { engine_w } else { 0.0 }, flow, drawn }
+    }
+
+    /// A force and a power of the engine near these that are within the limits, and what flows then.
+    #[cold]
+    #[inline(never)]
+    fn within(
+        &self,
+        limits: &Limits,
+        asked: &Asked,
+        engine_runs: bool,
+        mut force: f64,
+        mut engine_w: f64,
+    ) -> (f64, f64, Flow) {
+        let power = |engine_w: f64| engine_runs.then_some(engine_w);
+        let flow = |force: f64, engine_w: f64| self.topology.flow(asked, force, power(engine_w));
+        let too_much_w = |force: f64, engine_w: f64| limits.too_much_w(&flow(force, engine_w));
+        let pushed_w = |force: f64, engine_w: f64| limits.pushed_w(&flow(force, engine_w));
+        // What a crossing leaves is rounding of the power that flows.
+        let rounding_w = |found: &Flow| 1e-9 * (found.bus_w.abs() + limits.others_w + 1.0);
+
+        if too_much_w(force, engine_w) > 0.0 {
+            if engine_runs {
+                engine_w = crossing(engine_w, limits.most_w, |engine_w| -too_much_w(force, engine_w));
             }
-            // What the crossing leaves is rounding of the power that flows.
-            if force > 0.0 && too_much(&found) > 1e-9 * (found.bus_w.abs() + others + 1.0) {
-                let less = crossing(0.0, force, |less| -too_much(&flow(force - less, engine_w)));
-                force -= less;
-                found = flow(force, engine_w);
+            let found = flow(force, engine_w);
+            if force > 0.0 && limits.too_much_w(&found) > rounding_w(&found) {
+                force -= crossing(0.0, force, |less| -too_much_w(force - less, engine_w));
             }
-        } else if pushed(&found) > 0.0 {
-            if share.engine_runs {
-                let less = crossing(0.0, engine_w - least, |less| -pushed(&flow(force, engine_w - less)));
-                engine_w -= less;
-                found = flow(force, engine_w);
+        } else {
+            if engine_runs {
+                engine_w -=
+                    crossing(0.0, engine_w - limits.least_w, |less| -pushed_w(force, engine_w - less));
             }
-            if force < 0.0 && pushed(&found) > 1e-9 * (found.bus_w.abs() + others + 1.0) {
-                let less = crossing(0.0, -force, |less| -pushed(&flow(force + less, engine_w)));
-                force += less;
-                found = flow(force, engine_w);
+            let found = flow(force, engine_w);
+            if force < 0.0 && limits.pushed_w(&found) > rounding_w(&found) {
+                force += crossing(0.0, -force, |less| -pushed_w(force + less, engine_w));
             }
         }
-        let drawn = store.draw(found.bus_w + others, states[CHARGE], demand.battery_resistance_ohm);
-        Solved { force, engine_w: if share.engine_runs { engine_w } else { 0.0 }, flow: found, drawn }
+        (force, engine_w, flow(force, engine_w))
     }
 
     fn share(states: &[f64]) -> Share {
@@ -276,17 +315,19 @@ impl<T: Topology> Managed<T> {
         let asked = Self::asked(demand, states);
         let force = self.wanted_n(&asked);
         let others = self.topology.consumers().total_w(demand);
-        let bus = |engine_w: f64| self.topology.bus_w(&asked, force, engine_w) + others;
+        let bus_w = self.topology.bus_w(&asked, force);
+        let bus = |engine_w: f64| bus_w(engine_w) + others;
         let mut one = force * asked.speed_m_s + demand.shaft_power_w + others;
         let mut at_one = bus(one);
         let mut two = one + at_one;
         for _ in 0..ROUNDS {
             let at_two = bus(two);
-            if at_two.abs() <= ALONE * one.abs().max(two.abs()) || at_two == at_one || two == one {
+            let scale = one.abs().max(two.abs());
+            if at_two.abs() <= ALONE * scale || at_two == at_one || two == one {
                 break;
             }
             let next = two - at_two * (two - one) / (at_two - at_one);
-            let near = at_two.abs() <= NEARLY_ALONE * one.abs().max(two.abs());
+            let near = at_two.abs() <= NEARLY_ALONE * scale;
             (one, at_one, two) = (two, at_two, next);
             if near {
                 break;

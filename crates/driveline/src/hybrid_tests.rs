@@ -203,3 +203,33 @@ proptest! {
         }
     }
 }
+
+/// What a management is told as the power to follow leaves the store alone, at whatever speed, pull and shaft.
+#[test]
+fn the_power_to_follow_leaves_the_store_alone() {
+    fn worst<T: Topology>(hybrid: &Managed<T>, states: &[f64]) -> f64 {
+        let mut worst = 0_f64;
+        for speed_m_s in [0.0, 0.4, 1.5, 3.0, 6.0, 10.0] {
+            for power_w in [-60e3, -20e3, 0.0, 3e3, 20e3, 60e3, 120e3] {
+                for shaft_power_w in [0.0, 30e3] {
+                    let force_n = power_w / f64::max(speed_m_s, 1.0);
+                    let demand = Demand { shaft_power_w, ..asked(speed_m_s, force_n) };
+                    let alone_w = hybrid.alone_w(&demand, states);
+                    let asked = Managed::<T>::asked(&demand, states);
+                    let bus_w = hybrid.topology.bus_w(&asked, hybrid.wanted_n(&asked));
+                    let left_w = bus_w(alone_w) + hybrid.topology.consumers().total_w(&demand);
+                    let share = left_w.abs() / alone_w.abs().max(1e3);
+                    worst = worst.max(share);
+                }
+            }
+        }
+        worst
+    }
+    let (parallel, series, split) = (parallel(), series(), power_split());
+    let all = [
+        worst(&parallel, &states(&parallel, Some(5e4))),
+        worst(&series, &states(&series, Some(5e4))),
+        worst(&split, &states(&split, Some(5e4))),
+    ];
+    assert!(all.iter().all(|share| *share < 1e-4), "{all:?}");
+}

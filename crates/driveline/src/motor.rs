@@ -130,6 +130,7 @@ const SPEED_TAPER: f64 = 0.02;
 const ANY_LOSS: f64 = 1.0;
 
 impl LossMap {
+    #[inline(never)]
     fn loss_w(&self, speed: f64, torque: f64) -> f64 {
         let torque = if self.torques_n_m[0] < 0.0 { torque } else { torque.abs() };
         let (row, along) = place(&self.speeds_rad_s, speed);
@@ -228,6 +229,7 @@ impl Motor {
     }
 
     /// Loss at a torque and a speed.
+    #[inline]
     pub(crate) fn loss_w(&self, torque_n_m: f64, speed_rad_s: f64) -> f64 {
         let speed = speed_rad_s.abs();
         if let Some(map) = &self.loss_map {
@@ -242,6 +244,7 @@ impl Motor {
     }
 
     /// Greatest torque, driving or braking, at a speed and a temperature.
+    #[inline]
     pub(crate) fn limit_n_m(&self, speed_rad_s: f64, temperature_c: f64) -> f64 {
         let speed = speed_rad_s.abs();
         let torque = if speed * self.max_torque_n_m > self.max_power_w {

@@ -102,6 +102,9 @@ pub(crate) fn tapered(distance: f64, over: f64) -> f64 {
     if distance >= over { 1.0 } else { (distance / over).clamp(0.0, 1.0) }
 }
 
+/// Of a grid of no more points nobody guesses where a value lies.
+const FEW: usize = 8;
+
 /// A grid of no more points is looked through from end to end.
 const SHORT: usize = 24;
 
@@ -109,6 +112,14 @@ const SHORT: usize = 24;
 #[inline]
 pub(crate) fn place(grid: &[f64], value: f64) -> (usize, f64) {
     let last = grid.len() - 2;
+    let share = |index: usize| {
+        let share = (value - grid[index]) / (grid[index + 1] - grid[index]);
+        (index, share.clamp(0.0, 1.0))
+    };
+    // Counting has no branch to be foreseen.
+    if grid.len() <= FEW {
+        return share(grid[1..=last].iter().map(|point| usize::from(*point <= value)).sum());
+    }
     // Most grids are even or nearly so: where they would have it is looked at first.
     let (first, end) = (grid[0], grid[last + 1]);
     #[allow(
@@ -121,13 +132,11 @@ pub(crate) fn place(grid: &[f64], value: f64) -> (usize, f64) {
     let index = if holds {
         guess
     } else if grid.len() <= SHORT {
-        // Counting has no branch to be foreseen.
         grid.iter().map(|point| usize::from(*point <= value)).sum::<usize>().saturating_sub(1).min(last)
     } else {
         grid.partition_point(|point| *point <= value).saturating_sub(1).min(last)
     };
-    let share = (value - grid[index]) / (grid[index + 1] - grid[index]);
-    (index, share.clamp(0.0, 1.0))
+    share(index)
 }
 
 #[cfg(test)]

@@ -70,43 +70,57 @@ pub struct PowerSplit {
 /// A torque beyond a limit is weighed as power at this speed more, so that it counts at rest too [rad/s].
 const WEIGHING_RAD_S: f64 = 10.0;
 
+/// What turns at a speed and flows for a force, whatever the engine does.
+#[derive(Clone, Copy)]
+struct Wheels {
+    ring_rad_s: f64,
+    /// Torque and power that go out to the wheels behind the ring.
+    out_n_m: f64,
+    out_w: f64,
+    motor_rad_s: f64,
+}
+
 /// What turns and what flows behind the carrier of the planetary.
 struct Turned {
     sun_rad_s: f64,
     sun_n_m: f64,
-    motor_rad_s: f64,
     motor_n_m: f64,
     motor_loss_w: f64,
     generator_loss_w: f64,
-    /// Power that goes out to the wheels behind the ring.
-    out_w: f64,
     bus_w: f64,
 }
 
 impl PowerSplit {
-    /// For a force, and a power that goes through the carrier at its speed.
-    fn turned(&self, ring: f64, force_n: f64, (through_w, carrier): (f64, f64)) -> Turned {
-        let k = self.planetary_ratio;
-        let torque = if carrier > 0.0 { through_w / carrier } else { 0.0 };
-        let sun_rad_s = (1.0 + k) * carrier - k * ring;
-        let (sun_n_m, ring_n_m) = (torque / (1.0 + k), torque * k / (1.0 + k));
-        let generated_w = sun_n_m * sun_rad_s;
-
+    fn wheels(&self, speed_m_s: f64, force_n: f64) -> Wheels {
+        let ring_rad_s = self.ring_rad_s(speed_m_s);
         let gear = if force_n >= 0.0 { 1.0 / self.gear_efficiency } else { self.gear_efficiency };
         let out_n_m = force_n * self.wheel_radius_m / self.final_ratio * gear;
-        let motor_rad_s = self.motor_ratio * ring;
-        let motor_n_m = (out_n_m - ring_n_m) / self.motor_ratio;
-        let motor_loss_w = self.motor.loss_w(motor_n_m, motor_rad_s);
+        Wheels {
+            ring_rad_s,
+            out_n_m,
+            out_w: out_n_m * ring_rad_s,
+            motor_rad_s: self.motor_ratio * ring_rad_s,
+        }
+    }
+
+    /// For a power that goes through the carrier at its speed.
+    #[inline]
+    fn turned(&self, wheels: Wheels, (through_w, carrier): (f64, f64)) -> Turned {
+        let k = self.planetary_ratio;
+        let torque = if carrier > 0.0 { through_w / carrier } else { 0.0 };
+        let sun_rad_s = (1.0 + k) * carrier - k * wheels.ring_rad_s;
+        let sun_n_m = torque * (1.0 / (1.0 + k));
+        let generated_w = sun_n_m * sun_rad_s;
+        let motor_n_m = (wheels.out_n_m - k * sun_n_m) * (1.0 / self.motor_ratio);
+        let motor_loss_w = self.motor.loss_w(motor_n_m, wheels.motor_rad_s);
         let generator_loss_w = self.generator.loss_w(sun_n_m, sun_rad_s);
         Turned {
             sun_rad_s,
             sun_n_m,
-            motor_rad_s,
             motor_n_m,
             motor_loss_w,
             generator_loss_w,
-            out_w: out_n_m * ring,
-            bus_w: motor_n_m * motor_rad_s + motor_loss_w - generated_w + generator_loss_w,
+            bus_w: motor_n_m * wheels.motor_rad_s + motor_loss_w - generated_w + generator_loss_w,
         }
     }
 
@@ -114,11 +128,10 @@ impl PowerSplit {
         self.final_ratio * speed_m_s / self.wheel_radius_m
     }
 
-    /// The speed of the engine for a power, within what the generator can turn.
-    fn engine_rad_s(&self, asked: &Asked, engine_w: f64, ring: f64) -> f64 {
+    /// The lowest and the highest speed of the engine that the generator can turn with.
+    fn carried_rad_s(&self, ring: f64) -> (f64, f64) {
         let (k, most) = (self.planetary_ratio, self.generator.max_rad_s());
-        let least = (k * ring - most) / (1.0 + k);
-        self.engine.speed_rad_s(engine_w, &asked.at).max(least).min((k * ring + most) / (1.0 + k))
+        ((k * ring - most) / (1.0 + k), (k * ring + most) / (1.0 + k))
     }
 }
 
@@ -189,10 +202,11 @@ impl Topology for PowerSplit {
 
     fn flow(&self, asked: &Asked, force_n: f64, engine_w: Option<f64>) -> Flow {
         let Asked { demand, speed_m_s, at, motor_c, own } = *asked;
-        let ring = self.ring_rad_s(speed_m_s);
+        let wheels = self.wheels(speed_m_s, force_n);
         let (running, carrier) = match engine_w {
             Some(engine_w) => {
-                let speed = self.engine_rad_s(asked, engine_w, ring);
+                let (least, most) = self.carried_rad_s(wheels.ring_rad_s);
+                let speed = self.engine.speed_rad_s(engine_w, &at).max(least).min(most);
                 (self.engine.run_at(speed, engine_w, &at), speed)
             }
             None if demand.shaft_power_w == 0.0 => (self.engine.stopped(&at), 0.0),
@@ -200,8 +214,9 @@ impl Topology for PowerSplit {
             None => (self.engine.stopped(&at), self.engine.idle_rad_s()),
         };
         let through_w = engine_w.unwrap_or(0.0) - demand.shaft_power_w;
-        let turned = self.turned(ring, force_n, (through_w, carrier));
-        let Turned { sun_n_m, motor_rad_s, motor_n_m, motor_loss_w, generator_loss_w, .. } = turned;
+        let turned = self.turned(wheels, (through_w, carrier));
+        let Turned { sun_n_m, motor_n_m, motor_loss_w, generator_loss_w, .. } = turned;
+        let motor_rad_s = wheels.motor_rad_s;
         let limit = self.motor.limit_n_m(motor_rad_s, motor_c);
         let holds = self.generator.limit_n_m(turned.sun_rad_s, own[0]);
         let weigh = WEIGHING_RAD_S + motor_rad_s;
@@ -210,7 +225,7 @@ impl Topology for PowerSplit {
             bus_w: turned.bus_w,
             asked_w: ((motor_n_m - limit) * weigh).max((-sun_n_m - holds) * weigh),
             pushed_w: ((-motor_n_m - limit) * weigh).max((sun_n_m - holds) * weigh),
-            transmission_w: turned.out_w - force_n * speed_m_s,
+            transmission_w: wheels.out_w - force_n * speed_m_s,
             motor_loss_w,
             generator_loss_w,
             motor_rad_s,
@@ -221,9 +236,13 @@ impl Topology for PowerSplit {
         }
     }
 
-    fn bus_w(&self, asked: &Asked, force_n: f64, engine_w: f64) -> f64 {
-        let ring = self.ring_rad_s(asked.speed_m_s);
-        let carrier = self.engine_rad_s(asked, engine_w, ring);
-        self.turned(ring, force_n, (engine_w - asked.demand.shaft_power_w, carrier)).bus_w
+    fn bus_w(&self, asked: &Asked, force_n: f64) -> impl Fn(f64) -> f64 {
+        let wheels = self.wheels(asked.speed_m_s, force_n);
+        let (least, most) = self.carried_rad_s(wheels.ring_rad_s);
+        let (shaft_w, speed_rad_s) = (asked.demand.shaft_power_w, self.engine.speeds_rad_s(&asked.at));
+        move |engine_w| {
+            let carrier = speed_rad_s(engine_w).max(least).min(most);
+            self.turned(wheels, (engine_w - shaft_w, carrier)).bus_w
+        }
     }
 }

@@ -132,6 +132,13 @@ pub(crate) struct Drawn {
     pub charge_per_s: f64,
 }
 
+/// What stands behind the terminals: the open-circuit voltage [V] and the resistance [ohm].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Behind {
+    u: f64,
+    r: f64,
+}
+
 /// A store of electric energy.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Store {
@@ -184,13 +191,22 @@ impl Store {
 
     /// Most power at the terminals that it gives, and that it takes; both 0 or more.
     pub(crate) fn most_w(&self, charge: f64, more_ohm: f64) -> (f64, f64) {
-        let (u, r) = (self.open_v(charge), self.resistance(more_ohm));
+        self.most_behind_w(charge, self.behind(charge, more_ohm))
+    }
+
+    /// The same, with what stands behind the terminals.
+    pub(crate) fn most_behind_w(&self, charge: f64, Behind { u, r }: Behind) -> (f64, f64) {
         let taper = |distance: f64| tapered(distance, TAPER);
         let least_a = self.max_out_a.min((u - self.voltage_window.0) / r).min(0.5 * u / r).max(0.0);
         let out_a = least_a * taper(charge - self.window.0);
         let in_a =
             self.max_in_a.min((self.voltage_window.1 - u) / r).max(0.0) * taper(self.window.1 - charge);
         ((u - r * out_a) * out_a, (u + r * in_a) * in_a)
+    }
+
+    /// What stands behind the terminals at a charge.
+    pub(crate) fn behind(&self, charge: f64, more_ohm: f64) -> Behind {
+        Behind { u: self.open_v(charge), r: self.resistance(more_ohm) }
     }
 
     fn resistance(&self, more_ohm: f64) -> f64 {
@@ -200,7 +216,12 @@ impl Store {
 
     /// Draws a power from its terminals, whatever its limits; beyond U² / 4R without further loss.
     pub(crate) fn draw(&self, power_w: f64, charge: f64, more_ohm: f64) -> Drawn {
-        let (u, r) = (self.open_v(charge), self.resistance(more_ohm));
+        self.draw_behind(power_w, self.behind(charge, more_ohm))
+    }
+
+    /// The same, with what stands behind them.
+    #[inline]
+    pub(crate) fn draw_behind(&self, power_w: f64, Behind { u, r }: Behind) -> Drawn {
         let given = power_w.min(0.25 * u * u / r);
         // The lesser root, in the form that has no difference of like numbers.
         let current = 2.0 * given / (u + (u * u - 4.0 * r * given).max(0.0).sqrt());

@@ -23,8 +23,15 @@ const COMPARISON: &str = r#"(
     simulation: (fidelity: Longitudinal, step_s: 0.05),
 )"#;
 
-/// Seconds that the runs take on so many threads, the table of results left out.
-fn seconds(runs: u32, threads: usize) -> f64 {
+/// What runs took.
+struct Took {
+    seconds: f64,
+    /// Of all cores together. Where it is the same on one thread and on two, only a busy machine keeps them from twice the rate.
+    busy_seconds: f64,
+}
+
+/// What the runs take on so many threads, the table of results left out.
+fn took(runs: u32, threads: usize) -> Took {
     let registry = headland_stock::registry();
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
     let text = COMPARISON.replace("COUNT", &runs.to_string());
@@ -35,12 +42,23 @@ fn seconds(runs: u32, threads: usize) -> f64 {
     let mut journal = Journal::open(folder.path(), &identity, plan.total(), false).unwrap();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let settings = Settings { traces: false, stop: &|| false, progress: &|_| {} };
-    let begin = Instant::now();
+    let (begin, busy) = (Instant::now(), busy_seconds());
     pool.install(|| execute(&plan, &registry, &mut journal, &settings).unwrap());
-    let seconds = begin.elapsed().as_secs_f64();
+    let took = Took { seconds: begin.elapsed().as_secs_f64(), busy_seconds: busy_seconds() - busy };
     assert_eq!(journal.finished(), u64::from(runs));
     table::write(&plan, &mut journal, &folder.path().join("results.parquet")).unwrap();
-    seconds
+    took
+}
+
+/// Seconds that all threads of this program have worked so far; NaN where the system does not tell.
+fn busy_seconds() -> f64 {
+    const TICKS_PER_S: f64 = 100.0;
+    let told = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let fields: Vec<&str> = told.rsplit(')').next().unwrap_or_default().split_whitespace().collect();
+    let ticks =
+        |index: usize| fields.get(index).and_then(|field| field.parse::<f64>().ok()).unwrap_or(f64::NAN);
+    // Fields 14 and 15, counted behind the name of the program, which is the second.
+    (ticks(11) + ticks(12)) / TICKS_PER_S
 }
 
 /// Greatest resident memory so far [MB]; NaN where the system does not tell.
@@ -54,14 +72,18 @@ fn memory_mb() -> f64 {
 fn main() {
     // Memory first: its greatest value never falls.
     for runs in [1_000, 10_000, 40_000] {
-        seconds(runs, 2);
+        took(runs, 2);
         println!("batch/memory_{runs}_runs          {:>8.1} MB", memory_mb());
     }
     let mut ratios = Vec::new();
     for _ in 0..5 {
-        let (one, two) = (seconds(10_000, 1), seconds(10_000, 2));
-        println!("batch/10000_runs  one core {one:>6.2} s  two cores {two:>6.2} s  ratio {:.3}", one / two);
-        ratios.push(one / two);
+        let (one, two) = (took(10_000, 1), took(10_000, 2));
+        let ratio = one.seconds / two.seconds;
+        println!(
+            "batch/10000_runs  one core {:>6.2} s  two cores {:>6.2} s  ratio {ratio:.3}  work {:>6.2} s and {:>6.2} s",
+            one.seconds, two.seconds, one.busy_seconds, two.busy_seconds
+        );
+        ratios.push(ratio);
     }
     ratios.sort_by(f64::total_cmp);
     println!(

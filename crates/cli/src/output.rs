@@ -6,6 +6,26 @@ use headland_trace::{Run, write_parquet};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
+/// Writes a text; a file appears whole or not at all, and what stood there stays until then.
+pub fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
+    let failed = |error| Failure::unwritable(path, &error);
+    // A pipe or a terminal is written to; nothing takes its place.
+    if path.metadata().is_ok_and(|found| !found.is_file()) {
+        return std::fs::write(path, text).map_err(failed);
+    }
+    let mut draft = path.to_owned().into_os_string();
+    draft.push(".part");
+    std::fs::write(&draft, text).and_then(|()| std::fs::rename(&draft, path)).map_err(failed)
+}
+
+/// Refuses a file that cannot be written, before what takes long is begun; what stands there stays as it is.
+pub fn must_be_writable(path: &Path) -> Result<(), Failure> {
+    let stood = path.exists();
+    let opened = std::fs::OpenOptions::new().append(true).create(true).open(path);
+    opened.map_err(|error| Failure::unwritable(path, &error))?;
+    if stood { Ok(()) } else { std::fs::remove_file(path).map_err(|error| Failure::unwritable(path, &error)) }
+}
+
 /// A folder for results, and what was written there.
 #[derive(Debug)]
 pub struct Output {
@@ -43,11 +63,7 @@ impl Output {
     /// Writes a text; a file appears whole or not at all.
     pub fn text(&mut self, name: &str, text: &str) -> Result<PathBuf, Failure> {
         let path = self.file(name);
-        let mut draft = path.clone().into_os_string();
-        draft.push(".part");
-        std::fs::write(&draft, text)
-            .and_then(|()| std::fs::rename(&draft, &path))
-            .map_err(|error| Failure::unwritable(&path, &error))?;
+        write_whole(&path, text)?;
         Ok(path)
     }
 

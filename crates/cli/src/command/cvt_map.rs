@@ -3,6 +3,7 @@
 use crate::arguments::CvtMapOptions;
 use crate::failure::Failure;
 use crate::held::read_recording;
+use crate::output::write_whole;
 use crate::page::short;
 use crate::say::Say;
 use headland_calibrate::cvt_map::{CvtMap, Misfit, Sample, cvt_map};
@@ -106,7 +107,7 @@ pub fn run(options: &CvtMapOptions, say: Say) -> Result<(), Failure> {
         forces_n: map.forces_n.clone(),
     };
     let path = &options.out;
-    std::fs::write(path, ron(&map, &told)).map_err(|error| Failure::unwritable(path, &error))?;
+    write_whole(path, &ron(&map, &told))?;
     say.result(&in_words(&told, &map, options), &told)
 }
 

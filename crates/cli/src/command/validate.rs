@@ -2,6 +2,7 @@
 
 use crate::arguments::ValidateOptions;
 use crate::failure::Failure;
+use crate::output::{must_be_writable, write_whole};
 use crate::say::Say;
 use crate::validation;
 use headland_plugin::Registry;
@@ -15,8 +16,10 @@ struct Written {
 
 /// Runs the command.
 pub fn validate(registry: &Registry, options: &ValidateOptions, seed: u64, say: Say) -> Result<(), Failure> {
+    // The fits take minutes.
+    must_be_writable(&options.out)?;
     let text = validation::page(registry, &options.scenarios, (&options.beside, &options.out), seed, say)?;
-    std::fs::write(&options.out, &text).map_err(|error| Failure::unwritable(&options.out, &error))?;
+    write_whole(&options.out, &text)?;
     let file = options.out.display().to_string();
     let told = format!("written  {file}");
     say.result(&told, &Written { file, lines: text.lines().count() })

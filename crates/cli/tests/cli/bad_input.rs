@@ -183,6 +183,25 @@ fn a_path_that_cannot_be_written_is_named() {
     holds(&told, &["cannot write", "taken/out"]);
 }
 
+/// The page of the validation takes minutes to make: that it has no place is said before anything else is looked at.
+#[test]
+fn a_page_that_cannot_be_written_is_refused_before_it_is_made() {
+    let place = Place::new();
+    place.write("taken", "");
+    let validate = |out: &str| {
+        refused(2, &["validate", "--scenarios", &place.path("nowhere"), "--out", &place.path(out)])
+    };
+    holds(&validate("taken/validation.md"), &["cannot write", "taken/validation.md"]);
+    holds(&validate("missing/validation.md"), &["cannot write", "missing/validation.md"]);
+    holds(&validate("."), &["cannot write"]);
+    // What can be written is neither made nor touched until there is something to write.
+    holds(&validate("validation.md"), &["nowhere"]);
+    assert!(!std::path::Path::new(&place.path("validation.md")).exists());
+    place.write("old.md", "old");
+    holds(&validate("old.md"), &["nowhere"]);
+    assert_eq!(std::fs::read_to_string(place.path("old.md")).unwrap(), "old");
+}
+
 #[test]
 fn what_a_requirement_got_wrong_is_said() {
     let place = Place::new();

@@ -246,3 +246,74 @@ fn words_that_the_command_line_does_not_know_are_refused() {
     holds(&refused(2, &["demo", "coastdwn"]), &["did you mean `coastdown`"]);
     holds(&refused(2, &["plugins", "sole"]), &["did you mean `soil`"]);
 }
+
+/// A cycle of the project's tractors that cannot be driven to its end; gives what was said, and how long the trace is [s].
+fn undriveable(
+    vehicle: &str,
+    ground: &str,
+    start_m_s: f64,
+    pull: &str,
+    cycle: &str,
+    more: &str,
+) -> (String, f64) {
+    let place = Place::new();
+    let scenarios = super::help::top().join("scenarios");
+    let text = format!(
+        "(about: \"it cannot be driven\", vehicle: include(\"{0}/vehicles/{vehicle}.ron\"), ground: {ground}, \
+          air: (density_kg_m3: 1.2), start: (position_m: 0, speed_m_s: {start_m_s}), tasks: [Drawbar(force_n: \"{pull}\")], \
+          cycle: [{cycle}], {more} simulation: (fidelity: Longitudinal, step_s: 0.1))",
+        scenarios.display()
+    );
+    place.write("scenario.ron", &text);
+    let told = refused(1, &["run", &place.path("scenario.ron"), "--out", &place.path("out")]);
+    // What was simulated up to there is kept, with the reason.
+    let document = place.json("out/summary.json");
+    let stopped = &document["runs"][0]["end"]["Stopped"];
+    let reason = stopped["reason"].as_str().unwrap_or_else(|| panic!("{document}"));
+    assert!(told.contains(reason), "{told}");
+    let end_s = stopped["time_s"].as_f64().unwrap();
+    let at = format!("(at {end_s:.2} s and {:.1} m)", stopped["position_m"].as_f64().unwrap());
+    holds(&told, &[&at, "is kept"]);
+    let runs = headland_trace::read_parquet(std::path::Path::new(&place.path("out/trace.parquet"))).unwrap();
+    assert!((runs[0].trace.duration_s() - end_s).abs() < 1e-9, "{end_s}");
+    assert!(std::path::Path::new(&place.path("out/report.html")).exists());
+    (told, end_s)
+}
+
+const FLAT: &str = "(terrain: Flat, soil: Constant(coefficient: 0.06))";
+
+/// Every way in which a cycle cannot be driven ends its run with the time, the place and the reason, and with status 1.
+#[test]
+fn a_cycle_that_cannot_be_driven_stops_with_time_place_and_reason_and_keeps_what_was_simulated() {
+    let uphill = "(terrain: ConstantGrade(grade: 0.3, heading_rad: 0), soil: Constant(coefficient: 0.06))";
+    let behind = "Hold(for_s: 4), Drive(speed_m_s: 13, acceleration_m_s2: 3, tolerance_m_s: 0.5, until: Elapsed(for_s: 30))";
+    let (told, end_s) = undriveable("xerion_3800", FLAT, 3.0, "10 kN", behind, "");
+    holds(&told, &["falls behind what is wanted by", "the drive gives"]);
+    assert!(end_s > 4.0);
+    let valley = format!(
+        "(terrain: Heightmap(file: \"{}\", path: Points(points: [(east_m: 40, north_m: 60), (east_m: 150, north_m: 90)])), \
+          soil: Constant(coefficient: 0.03))",
+        super::help::top().join("terrain/valley.asc").display()
+    );
+    let (told, end_s) = undriveable("xerion_3800", &valley, 5.0, "1 kN", "Hold(for_s: 4000)", "");
+    holds(&told, &["the path ends: it runs from 0 m to 114."]);
+    assert!(end_s > 20.0);
+
+    let back = "Hold(for_s: 4), Drive(speed_m_s: 3, acceleration_m_s2: 1, until: Position(position_m: 5))";
+    let (told, _) = undriveable("xerion_3800", FLAT, 3.0, "1 kN", back, "");
+    holds(&told, &["to end at 5 m, which lies 7.0 m behind the vehicle"]);
+}
+
+/// A path that a map does not hold is refused before anything is driven, with where it leaves.
+#[test]
+fn a_path_that_leaves_its_map_is_refused_with_the_place() {
+    let place = Place::new();
+    let map = super::help::top().join("terrain/valley.asc");
+    let path = "Points(points: [(east_m: 40, north_m: 60), (east_m: 150, north_m: 90), (east_m: 9000, north_m: 190)])";
+    let terrain = format!("Heightmap(file: \"{}\", path: {path})", map.display());
+    place.write("scenario.ron", &SCENARIO.replace("terrain: Flat", &format!("terrain: {terrain}")));
+    let told = refused(2, &["run", &place.path("scenario.ron"), "--out", &place.path("out")]);
+    let place_of_it = "578.0 m after its start at 600.2 m east, 201.9 m north, off the map";
+    holds(&told, &["scenario.ron:11:", place_of_it, "within 0 to 600 m east and 0 to 400 m north"]);
+    assert!(!std::path::Path::new(&place.path("out/trace.parquet")).exists());
+}

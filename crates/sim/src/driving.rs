@@ -5,6 +5,7 @@ use crate::cycle::{Hopeless, Running};
 use crate::ending::Ending;
 use crate::hand::{Hand, Knowing, Standing};
 use crate::plan::{Phase, Until};
+use crate::quasi_static::Stretch;
 use crate::reference::{Driver, Reference};
 use crate::step::{Machine, Moment};
 use std::cell::Cell;
@@ -198,7 +199,8 @@ impl Running<'_> {
                 Driver::Knowing(gain_per_s) => {
                     let control = Knowing { gain_per_s, reference, piece, hand: &hand };
                     if self.quasi_static {
-                        self.along((reference, piece), &control, ending, corner_s, hopeless)?
+                        let control = &control;
+                        self.along(&Stretch { reference, piece, end_s: corner_s, control, ending, hopeless })?
                     } else {
                         self.until(&control, ending, corner_s, hopeless)?
                     }
@@ -248,7 +250,9 @@ impl Running<'_> {
         let control = Standing(&hand);
         if self.quasi_static {
             let rest = Reference::steady(self.machine.time_s, 0.0);
-            self.along((&rest, 0), &control, ending, f64::INFINITY, None)?;
+            let (reference, control) = (&rest, &control);
+            let end_s = f64::INFINITY;
+            self.along(&Stretch { reference, piece: 0, end_s, control, ending, hopeless: None })?;
         } else {
             self.until(&control, ending, f64::INFINITY, None)?;
         }

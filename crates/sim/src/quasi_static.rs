@@ -23,6 +23,17 @@ const AS_WANTED_M_S: f64 = 1e-9;
 /// The same for an acceleration [m/s²].
 const AS_WANTED_M_S2: f64 = 1e-9;
 
+/// A piece of a speed over time, with who drives it.
+pub(crate) struct Stretch<'a, C> {
+    pub reference: &'a Reference,
+    pub piece: usize,
+    /// Where the piece ends.
+    pub end_s: f64,
+    pub control: &'a C,
+    pub ending: &'a Ending,
+    pub hopeless: Hopeless<'a>,
+}
+
 /// A step to come.
 #[derive(Clone, Copy)]
 struct Ahead {
@@ -49,36 +60,23 @@ enum Met {
 
 impl Running<'_> {
     /// As [`Running::until`], along a piece of a speed over time.
-    pub(crate) fn along(
-        &mut self,
-        on: (&Reference, usize),
-        control: &impl Control,
-        ending: &Ending,
-        piece_end_s: f64,
-        hopeless: Hopeless,
-    ) -> Result<bool, String> {
+    pub(crate) fn along(&mut self, stretch: &Stretch<impl Control>) -> Result<bool, String> {
         // Decided here, so that within a step there is only one kind of vehicle.
         if self.machine.model.axles.is_none() {
-            self.along_as::<true>(on, control, ending, piece_end_s, hopeless)
+            self.along_as::<true>(stretch)
         } else {
-            self.along_as::<false>(on, control, ending, piece_end_s, hopeless)
+            self.along_as::<false>(stretch)
         }
     }
 
-    fn along_as<const WHOLE: bool>(
-        &mut self,
-        on: (&Reference, usize),
-        control: &impl Control,
-        ending: &Ending,
-        piece_end_s: f64,
-        hopeless: Hopeless,
-    ) -> Result<bool, String> {
+    fn along_as<const WHOLE: bool>(&mut self, stretch: &Stretch<impl Control>) -> Result<bool, String> {
+        let Stretch { end_s, control, ending, hopeless, .. } = *stretch;
         loop {
-            match self.at_middle::<WHOLE>(on, control, ending, piece_end_s, hopeless)? {
+            match self.at_middle::<WHOLE>(stretch)? {
                 Met::Stepped => {}
                 Met::PieceEnds => return Ok(false),
                 Met::Not => {
-                    if let Some(ended) = self.one(control, ending, piece_end_s, hopeless)? {
+                    if let Some(ended) = self.one(control, ending, end_s, hopeless)? {
                         return Ok(ended);
                     }
                 }
@@ -89,14 +87,8 @@ impl Running<'_> {
     /// A step by the balance in its middle, once the driveline has decided.
     #[allow(clippy::inline_always, reason = "the inner loop")]
     #[inline(always)]
-    fn at_middle<const WHOLE: bool>(
-        &mut self,
-        (reference, piece): (&Reference, usize),
-        control: &impl Control,
-        ending: &Ending,
-        piece_end_s: f64,
-        hopeless: Hopeless,
-    ) -> Result<Met, String> {
+    fn at_middle<const WHOLE: bool>(&mut self, stretch: &Stretch<impl Control>) -> Result<Met, String> {
+        let Stretch { reference, piece, end_s: piece_end_s, control, ending, hopeless } = *stretch;
         let machine = &mut self.machine;
         let (time_s, speed_m_s) = (machine.time_s, machine.speed_m_s());
         // The first row of a run stands at its begin, and the last of a phase at its end.

@@ -290,6 +290,22 @@ fn a_cycle_that_cannot_be_driven_stops_with_time_place_and_reason_and_keeps_what
     let (told, end_s) = undriveable("xerion_3800", FLAT, 3.0, "10 kN", behind, "");
     holds(&told, &["falls behind what is wanted by", "the drive gives"]);
     assert!(end_s > 4.0);
+    let climb = "Drive(speed_m_s: 2, acceleration_m_s2: 1, until: Travelled(distance_m: 9))";
+    let (told, _) = undriveable("xerion_3800", uphill, 0.0, "90 kN", climb, "");
+    holds(&told, &["the vehicle stands where it is to drive at 2.00 m/s", "do not overcome the resistances"]);
+
+    let soft =
+        "(terrain: Flat, soil: Brixius(cone_index_pa: \"450 kPa\", construction: Radial, pass_factor: 1.5))";
+    let faster = "Hold(for_s: 4), Reach(speed_m_s: 3, acceleration_m_s2: 3)";
+    let (told, end_s) = undriveable("xerion_3800_axles", soft, 0.6, "55 kN", faster, "");
+    holds(&told, &["slip past the limit", "at a slip of"]);
+    assert!(end_s > 3.9);
+
+    let drained = "runs: [(id: \"run\", with: {\"vehicle.driveline.battery.initial_charge\": 0.105})],";
+    let (told, end_s) = undriveable("xerion_3800_electric", FLAT, 3.0, "10 kN", "Hold(for_s: 4000)", drained);
+    holds(&told, &["the battery is empty", "it is used down to 0.1"]);
+    assert!(end_s > 10.0);
+
     let valley = format!(
         "(terrain: Heightmap(file: \"{}\", path: Points(points: [(east_m: 40, north_m: 60), (east_m: 150, north_m: 90)])), \
           soil: Constant(coefficient: 0.03))",

@@ -8,6 +8,8 @@ mod commands;
 mod cvt_map;
 #[path = "whole/days.rs"]
 mod days;
+#[path = "whole/evidence.rs"]
+mod evidence;
 #[path = "whole/files.rs"]
 mod files;
 #[path = "whole/hybrids.rs"]

@@ -1,11 +1,10 @@
-//! Hybrids held to what physics allows them.
-//!
-//! `cargo test --test whole hybrids -- --nocapture` prints how much fuel they take.
+//! Hybrids held to what physics allows them; `docs/evidence/hybrids.md` tells how much fuel they take.
 
+use crate::evidence;
 use crate::root;
 use headland_scenario::{RunSpec, Scenario};
 use headland_sim::{End, Outcome, simulate};
-use std::io::Write;
+use std::fmt::Write as _;
 use std::path::Path;
 
 const LEVELLING: &str =
@@ -65,35 +64,49 @@ fn no_hybrid_saves_more_than_a_twentieth_at_nine_tenths_of_the_load() {
     let mechanical = steady("xerion_3800_cvt", 10.0, 62e3, &[alike()]);
     let power = mean(&mechanical, "engine_speed_rad_s") * mean(&mechanical, "engine_torque_n_m");
     assert!((0.87..0.93).contains(&(power / 254e3)), "{power}");
+    let mut table = String::from(
+        "| hybrid | management | fuel of the CVT | charge, of the fuel |\n|---|---|---:|---:|\n",
+    );
     for (vehicle, management) in [
         ("xerion_3800_parallel", ADAPTIVE.to_owned()),
         ("xerion_3800_parallel", LEVELLING.to_owned()),
         ("xerion_3800_series", LEVELLING.to_owned()),
         ("xerion_3800_power_split", LEVELLING.replace("0.55", "0.8")),
     ] {
-        let hybrid = steady(vehicle, 10.0, 62e3, &[alike(), ("vehicle.management", management)]);
+        let hybrid = steady(vehicle, 10.0, 62e3, &[alike(), ("vehicle.management", management.clone())]);
         assert_eq!(hybrid.end, End::Finished, "{vehicle}");
         let apart = hybrid.trace.get("speed_m_s").unwrap().last().unwrap() * 3.6 - 10.0;
         assert!(apart.abs() < 0.01, "{vehicle} falls behind by {apart} km/h");
         let share = corrected_j(&hybrid) / mechanical.ledger.source_j;
-        let _ = writeln!(std::io::stderr(), "{vehicle}: {share:.4} of the fuel of the transmission");
+        let (name, named) =
+            (vehicle.trim_start_matches("xerion_3800_"), management.split('(').next().unwrap());
+        let charged = 100.0 * gained_j(&hybrid) / hybrid.ledger.source_j;
+        let _ = writeln!(
+            table,
+            "| {} | `{named}` | {:.1} % | {charged:+.1} % |",
+            name.replace('_', " "),
+            100.0 * share
+        );
         assert!((0.95..1.2).contains(&share), "{vehicle}: {share} of the fuel of the transmission");
         // A factor that is wrong by a tenth is then wrong by less than two hundredths of the fuel.
         assert!(gained_j(&hybrid).abs() < 0.07 * hybrid.ledger.source_j, "{vehicle}: {}", gained_j(&hybrid));
     }
+    evidence::holds("hybrids.md", "nine-tenths", &table);
 }
 
 /// Between the wheels and the engine there are two machines in a series hybrid, and gears in the other.
 #[test]
 fn series_loses_to_mechanical_at_every_steady_load() {
+    let mut table = String::from("| km/h | pull kN | fuel of the CVT |\n|---:|---:|---:|\n");
     for (speed_km_h, pull_n) in [(8.0, 20e3), (10.0, 35e3), (10.0, 62e3), (20.0, 15e3)] {
         let mechanical = steady("xerion_3800_cvt", speed_km_h, pull_n, &[alike()]);
         let with = [alike(), ("vehicle.management", LEVELLING.to_owned())];
         let series = steady("xerion_3800_series", speed_km_h, pull_n, &with);
         let share = corrected_j(&series) / mechanical.ledger.source_j;
-        let _ = writeln!(std::io::stderr(), "series at {speed_km_h} km/h, {pull_n} N: {share:.4}");
+        let _ = writeln!(table, "| {speed_km_h} | {} | {:.1} % |", pull_n / 1e3, 100.0 * share);
         assert!(share > 1.0, "{speed_km_h} km/h, {pull_n} N: {share}");
     }
+    evidence::holds("hybrids.md", "series", &table);
 }
 
 /// What flows out of a battery is what its charge falls by, and the ledger's account is the energy of that charge.

@@ -1,14 +1,12 @@
-//! Managements measured against the optimum that knows the whole course.
-//!
-//! `cargo test --test whole managements -- --nocapture` prints the table.
+//! Managements measured against the optimum that knows the whole course; `docs/evidence/hybrids.md` has the table.
 
+use crate::evidence;
 use crate::root;
 use headland_management::{Course, Grid, optimum};
 use headland_plugin::{Consequence, Demand, Driveline, Share};
 use headland_scenario::{RunSpec, Scenario};
 use headland_sim::simulate;
 use std::fmt::Write as _;
-use std::io::Write as _;
 
 /// A step of the course, short enough for a management to follow the load [s].
 const STEP_S: f64 = 1.0;
@@ -163,10 +161,8 @@ fn no_management_beats_what_knows_the_whole_course_and_equivalent_consumption_co
             1.06,
         ),
     ];
-    let mut table = format!(
-        "{:<15}{:>12}{:>10}{:>12}{:>8}\n",
-        "management", "fuel [MJ]", "charge", "least [MJ]", "ratio"
-    );
+    let mut table =
+        String::from("| management | fuel MJ | least MJ | above the least |\n|---|---:|---:|---:|\n");
     for (name, management, most) in managements {
         let with = vec![("vehicle.management".to_owned(), management.to_owned())];
         let scenario = base.run(&RunSpec { id: name.to_owned(), with }, &registry).unwrap();
@@ -178,16 +174,13 @@ fn no_management_beats_what_knows_the_whole_course_and_equivalent_consumption_co
         let grid = Grid { window, charges: 81, levels: 40, full_charge_j: FULL_CHARGE_J };
         let least = optimum(&driven, 0.55, charge, grid).unwrap();
         let ratio = fuel_j / least.fuel_j;
-        let _ = writeln!(
-            table,
-            "{name:<15}{:>12.3}{charge:>10.4}{:>12.3}{ratio:>8.4}",
-            fuel_j / 1e6,
-            least.fuel_j / 1e6
-        );
+        let (fuel_mj, least_mj) = (fuel_j / 1e6, least.fuel_j / 1e6);
+        let above = 100.0 * (ratio - 1.0);
+        let _ = writeln!(table, "| `{name}` | {fuel_mj:.1} | {least_mj:.1} | {above:+.1} % |");
         assert!(short_j < 0.002 * fuel_j, "{name} leaves {short_j} J");
         assert!(least.charges.last().unwrap() - charge > -2e-4, "{name}: {:?}", least.charges.last());
         // The optimum is one of a grid: half a percent is what that costs it.
         assert!(ratio > 0.995 && ratio < most, "{name}: {ratio} of the least\n{table}");
     }
-    let _ = write!(std::io::stderr(), "{table}");
+    evidence::holds("hybrids.md", "managements", &table);
 }

@@ -1,4 +1,4 @@
-//! `docs/plugins.md`, made from the models' own cards.
+//! `docs/plugins.md` and a page for each family below `docs/plugins`, made from the models' own cards.
 //!
 //! `HEADLAND_WRITE=1 cargo test --test whole models` writes it anew.
 
@@ -9,26 +9,34 @@ use std::fmt::Write;
 const HEAD: &str = "# The models that scenarios can name
 
 Made from what the models say of themselves; `headland plugins NAME` prints the same. Every number of a scenario is in the
-unit that stands here, or is a text with a unit of its own (`\"30 km/h\"`). A value outside what is usual is accepted and
+unit that its page says, or is a text with a unit of its own (`\"30 km/h\"`). A value outside what is usual is accepted and
 remarked upon; a value outside what it must be is refused.
 
 How a model of your own joins them: [own_plugin](own_plugin/README.md).
 ";
 
-fn page() -> String {
+/// What every page of a family begins with.
+const PARAMETERS: &str = "Made from what the models say of themselves. [All models](../plugins.md)
+";
+
+/// The pages by their paths below `docs`: the list of all models, and one for each family.
+fn pages() -> Vec<(String, String)> {
     let registry = headland_stock::registry();
-    let mut page = HEAD.to_owned();
-    page.push('\n');
+    let mut list = HEAD.to_owned();
+    let mut pages = Vec::new();
     for kind in Kind::ALL {
-        let _ = writeln!(page, "- [{}](#{})", title(kind), title(kind).to_lowercase());
-    }
-    for kind in Kind::ALL {
-        let _ = writeln!(page, "\n## {}", title(kind));
+        let name = format!("plugins/{}.md", title(kind).to_lowercase());
+        let _ = writeln!(list, "\n## {}\n\n[Equations, sources and parameters]({name})\n", title(kind));
+        let mut page = format!("# {}\n\n{PARAMETERS}", title(kind));
         for card in registry.cards(kind) {
+            let _ =
+                writeln!(list, "- [`{}`]({name}#{}): {}", card.name, card.name.to_lowercase(), card.about);
             describe(&mut page, card);
         }
+        pages.push((name, page));
     }
-    page
+    pages.push(("plugins.md".to_owned(), list));
+    pages
 }
 
 fn title(kind: Kind) -> &'static str {
@@ -45,7 +53,7 @@ fn title(kind: Kind) -> &'static str {
 fn describe(page: &mut String, card: &Card) {
     let _ = write!(
         page,
-        "\n### `{}`\n\n{}.\n\n```text\n{}\n```\n\n",
+        "\n## `{}`\n\n{}.\n\n```text\n{}\n```\n\n",
         card.name,
         capital(card.about),
         card.equation
@@ -80,18 +88,25 @@ fn capital(text: &str) -> String {
 }
 
 #[test]
-fn the_page_of_the_models_is_up_to_date() {
-    let path = root().join("docs/plugins.md");
-    let page = page();
-    if std::env::var_os("HEADLAND_WRITE").is_some() {
-        std::fs::write(&path, &page).unwrap();
+fn the_pages_of_the_models_are_up_to_date() {
+    let pages = pages();
+    for (name, page) in &pages {
+        let path = root().join("docs").join(name);
+        if std::env::var_os("HEADLAND_WRITE").is_some() {
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(&path, page).unwrap();
+        }
+        let found = std::fs::read_to_string(&path).unwrap_or_default();
+        let first = page.lines().zip(found.lines()).position(|(made, found)| made != found);
+        assert!(
+            *page == found,
+            "docs/{name} differs from the models from line {} on; `HEADLAND_WRITE=1 cargo test --test whole models` writes it \
+             anew",
+            first.unwrap_or(found.lines().count()) + 1
+        );
     }
-    let found = std::fs::read_to_string(&path).unwrap_or_default();
-    let first = page.lines().zip(found.lines()).position(|(made, found)| made != found);
-    assert!(
-        page == found,
-        "docs/plugins.md differs from the models from line {} on; `HEADLAND_WRITE=1 cargo test --test whole models` \
-         writes it anew",
-        first.unwrap_or(found.lines().count()) + 1
-    );
+    for entry in std::fs::read_dir(root().join("docs/plugins")).unwrap() {
+        let name = format!("plugins/{}", entry.unwrap().file_name().to_string_lossy());
+        assert!(pages.iter().any(|(made, _)| *made == name), "docs/{name} belongs to no family of models");
+    }
 }

@@ -39,8 +39,8 @@ pub struct Progress {
     pub total: u64,
 }
 
-/// Rows that wait for the disk; no thread runs ahead of it by more.
-const WAITING_ROWS: usize = 512;
+/// Rows that wait for the disk; no thread runs ahead of it by more. A disk that is slow for a tenth of a second holds up nobody.
+const WAITING_ROWS: usize = 2048;
 
 /// So long rows are gathered before they are written: each writing waits for the disk, and takes time from the runs.
 const GATHERED: Duration = Duration::from_millis(50);

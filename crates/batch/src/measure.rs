@@ -112,6 +112,11 @@ impl Measure {
     }
 }
 
+/// What making up for a change of charge adds to the fuel that was burnt, as a share of that.
+pub(crate) fn made_up(row: &Row) -> f64 {
+    row.value("fuel_at_charge_kg") / row.value("fuel_kg") - 1.0
+}
+
 /// Energy from the source and from electric stores beside it [J].
 fn energy_j(row: &Row) -> f64 {
     let sources: Vec<f64> = row
@@ -177,6 +182,14 @@ mod tests {
             assert!((value - expected).abs() < 1e-9 * expected, "{measure:?}: {value}");
         }
         assert!(Measure::Electricity.of(&run, &accounting).is_nan());
+    }
+
+    /// 8.4 kg at the same charge for 8 kg that were burnt: a twentieth more.
+    #[test]
+    fn what_is_made_up_for_is_a_share_of_the_fuel_burnt() {
+        let share = made_up(&row(&[("fuel_kg", 8.0), ("fuel_at_charge_kg", 8.4)]));
+        assert!((share - 0.05).abs() < 1e-12, "{share}");
+        assert!(made_up(&row(&[("fuel_kg", f64::NAN), ("fuel_at_charge_kg", f64::NAN)])).is_nan());
     }
 
     #[test]

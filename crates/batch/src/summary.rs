@@ -5,7 +5,7 @@
 
 use crate::error::BatchError;
 use crate::journal::Journal;
-use crate::measure::Measure;
+use crate::measure::{Measure, made_up};
 use crate::plan::{Plan, Setting, Spec};
 use crate::row::{Row, Status, account_of_column};
 use crate::statistics::{Line, Products, Statistics};
@@ -31,6 +31,8 @@ pub struct Cell {
     pub accounts: Vec<(String, Statistics)>,
     /// Change of the state of charge.
     pub charge: Statistics,
+    /// What making up for it adds to the fuel that was burnt, as a share of that.
+    pub made_up: Statistics,
     /// Fuel [kg] over energy that electric stores gave [J]; without points unless the charge at the start alone is moved.
     pub fuel_over_store: Line,
 }
@@ -144,6 +146,7 @@ impl Gathered {
                 against: none.clone(),
                 accounts: Vec::new(),
                 charge: Statistics::default(),
+                made_up: Statistics::default(),
                 fuel_over_store: Line::default(),
             });
         }
@@ -341,5 +344,6 @@ impl Cell {
             }
         }
         self.charge.add(row.value("state_of_charge_end") - row.value("state_of_charge_start"));
+        self.made_up.add(made_up(row));
     }
 }

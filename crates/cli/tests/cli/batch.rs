@@ -350,3 +350,24 @@ fn runs_of_a_batch_are_drawn_beside_one_another() {
     assert_eq!(code, Some(0), "{told}");
     assert!(picture(&place) < two, "{} {two}", picture(&place));
 }
+
+/// Three drivelines that are equally fast offer no choice between time and fuel; how much of the fuel is made up is told.
+#[test]
+fn the_page_tells_where_there_is_no_choice_and_how_much_fuel_is_made_up() {
+    let place = Place::new();
+    let out = place.path("out");
+    let (code, told) = status({
+        let mut command = headland();
+        command.args(["demo", "batch", "--quiet", "--out", &out]).stderr(Stdio::piped());
+        command
+    });
+    assert_eq!(code, Some(0), "{told}");
+    let page = String::from_utf8(bytes(&place, "out/report.html")).unwrap();
+    assert!(
+        page.contains(
+            "Ploughing: time differs by less than a thousandth, so fuel alone is left to choose by."
+        )
+    );
+    assert!(page.contains("made up for, of the fuel burnt"));
+    assert!(page.contains("Time against fuel: transport"));
+}

@@ -55,7 +55,7 @@ impl Content<'_> {
                 self.summary.one_choice_of
             )));
         }
-        let mut plots = 0;
+        let mut told = 0;
         for (cycle, ground) in self.places().into_iter().take(IN_DETAIL) {
             let here: Vec<&Choice> = choices
                 .iter()
@@ -64,6 +64,17 @@ impl Content<'_> {
                 .filter(|choice| choice.measures[x].is_finite() && choice.measures[y].is_finite())
                 .collect();
             if here.len() < 3 {
+                continue;
+            }
+            let column = |index: usize| here.iter().map(|choice| choice.measures[index]).collect::<Vec<_>>();
+            if let Some(same) = [x, y].into_iter().find(|index| !varies(&column(*index))) {
+                let other = if same == x { y } else { x };
+                let (same, other) = (self.axis(same).label, self.axis(other).label);
+                section = section.with(headland_report::Item::Words(format!(
+                    "{}: {same} differs by less than a thousandth, so {other} alone is left to choose by.",
+                    super::capital(&self.place(cycle, ground))
+                )));
+                told += 1;
                 continue;
             }
             let cloud = |name: String, of: Vec<(f64, f64)>, joined: bool| {
@@ -89,9 +100,9 @@ impl Content<'_> {
             );
             let scatter = Scatter { x: self.axis(x), y: self.axis(y), clouds };
             section = section.with(Plot::new(super::capital(&title), scatter));
-            plots += 1;
+            told += 1;
         }
-        (plots > 0).then_some(section)
+        (told > 0).then_some(section)
     }
 }
 

@@ -92,13 +92,17 @@ impl Content<'_> {
         let density = self.plan.comparison.accounting.fuel.map(|fuel| fuel.density_kg_m3);
         let lines = self.summary.cells.iter().any(|cell| cell.fuel_over_store.fit().is_some());
         let rows = self.summary.cells.iter().filter(charged).map(|cell| {
-            let mut change = cell.charge;
-            change.scale(100.0);
+            let percent = |share: &Statistics| {
+                let mut share = *share;
+                share.scale(100.0);
+                number(&share)
+            };
             let mut row = vec![
                 Cell::from(self.variant(cell.variant)),
                 Cell::from(self.place(cell.cycle, cell.ground)),
-                number(&change),
+                percent(&cell.charge),
                 number(&cell.measures[fuel]),
+                percent(&cell.made_up),
             ];
             if lines {
                 let line = cell.fuel_over_store.fit();
@@ -114,6 +118,7 @@ impl Content<'_> {
             Axis::new("cycle", ""),
             Axis::new("change of charge", "%"),
             Axis::new("fuel at the same charge", axis.unit.clone()),
+            Axis::new("made up for, of the fuel burnt", "%"),
         ];
         if lines {
             columns.extend([Axis::new("by the line", axis.unit), Axis::new("R² of the line", "")]);

@@ -46,6 +46,8 @@ pub(crate) struct Spin {
     pub changes_m_s2: Vec<f64>,
     /// What each wheel adds to inertia [kg].
     pub masses_kg: Vec<f64>,
+    /// Way of each wheel in a last step in which brakes brought it to a stand; 0 in others [m].
+    pub stopped_m: Vec<f64>,
 }
 
 /// What a step took.
@@ -109,6 +111,7 @@ impl Spin {
             wheels_m_s: vec![0.0; wheels],
             changes_m_s2: vec![0.0; wheels],
             masses_kg,
+            stopped_m: vec![0.0; wheels],
         };
         spin.spread();
         spin
@@ -132,6 +135,7 @@ impl Spin {
             wheels_m_s: vec![0.0; tyres.len()],
             changes_m_s2: vec![0.0; tyres.len()],
             masses_kg,
+            stopped_m: vec![0.0; tyres.len()],
         };
         spin.spread();
         spin
@@ -202,6 +206,10 @@ impl Spin {
             let way_m = 0.5 * step_s * (before_m_s + shaft.speed_m_s);
             turned.driven_m += shaft.share * way_m;
             turned.brakes_j += mass_kg * (free_m_s - shaft.speed_m_s) / step_s * way_m;
+            let stopped_m = if held_m_s > 0.0 && shaft.speed_m_s == 0.0 { way_m } else { 0.0 };
+            for (wheel, lead) in &shaft.wheels {
+                self.stopped_m[*wheel] = lead * stopped_m;
+            }
             if before_m_s * way < 0.0 {
                 // Told that its wheels stand, the driveline books nothing: what it holds them with is heat, as in a clutch.
                 turned.brakes_j +=

@@ -7,9 +7,11 @@
 //! S = μ N tanh(c_α η / μ)                               across it
 //! (G, S) → (G, S) / max(1, hypot(G, S) / (μ N))         no more than the friction circle holds
 //!
+//! ζ ← min(|ζ|, 3 μ / c_ζ) sign ζ, η likewise, where (w − u) ζ < 0         a tyre that slides is wound no further than it grips
+//!
 //! u and v are the velocity of the vehicle at the ground, along and across the wheel, w the speed at which it rolls.
-//! Sources: Pacejka, *Tire and Vehicle Dynamics* (2012), chapter 7 (single contact point with relaxation) and chapter 4
-//! (similarity, the bound of combined forces); the soil's own for G. Tread and carcass damp slip with the time constant c / k
+//! Sources: Pacejka, *Tire and Vehicle Dynamics* (2012), chapter 7 (single contact point with relaxation), chapter 8 (the bound
+//! of the deflection about a rest) and chapter 4 (similarity, the bound of combined forces); the soil's own for G. Tread and carcass damp slip with the time constant c / k
 //! of the tyre. The ground is its mean over the footprint. Leaves out camber, and the moment that turns a wheel back.
 
 use crate::chassis::{AxleBody, Suspension};
@@ -19,6 +21,8 @@ use rapier3d_f64::prelude::Vector;
 
 /// Soils are asked for slips up to this: a wheel that slips more only spins.
 const MOST_SLIP: f64 = 0.9;
+/// A tyre that slides goes back from as many times the slip at which its stiffness would bring it to its friction: tanh 3 = 0.995.
+const WOUND: f64 = 3.0;
 /// Ruts deepen as wheels come to new ground; under one that stands as if it went so fast [m/s].
 const SLOWEST_M_S: f64 = 1.0;
 
@@ -208,6 +212,12 @@ impl Wheel<'_> {
         let Touch { load_n, along_m_s: u, across_m_s: v, point, .. } = self.touch;
         let AxleBody { friction: mu, relaxation_length_m: sigma, slip_stiffness, .. } = self.body;
         let w = rolling_m_s;
+        let unwound = |slip: f64, sliding: f64, stiffness: f64| {
+            let most = WOUND * mu / stiffness;
+            if sliding * slip < 0.0 { slip.clamp(-most, most) } else { slip }
+        };
+        self.slip = unwound(self.slip, w - u, slip_stiffness);
+        self.side = unwound(self.side, -v, self.body.cornering_stiffness_per_rad);
         let follow = |slip: f64, sliding: f64, passing: f64| {
             (slip + step_s * sliding / sigma) / (1.0 + step_s * passing / sigma)
         };

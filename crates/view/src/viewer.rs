@@ -13,6 +13,9 @@ pub const VIEWER_VERSION: &str = "0.36.3";
 /// How long a viewer may take to find out that it cannot start.
 const GRACE: Duration = Duration::from_millis(1500);
 
+/// The viewer takes more recordings by a port, which it opens to all the world unless told to keep to this machine.
+const LISTENS: [&str; 2] = ["--bind", "127.0.0.1"];
+
 /// Writes the scene to a file in the system's folder for such files and starts the viewer on it; gives the file.
 ///
 /// # Errors
@@ -68,6 +71,7 @@ fn same(one: &str, other: &str) -> bool {
 fn start(viewer: &Path, path: &Path) -> Result<(), ViewError> {
     let file_error = |source| ViewError::File { path: viewer.to_owned(), source };
     let mut child = Command::new(viewer)
+        .args(LISTENS)
         .arg(path)
         .stdin(Stdio::null())
         .stdout(Stdio::null())
@@ -142,6 +146,16 @@ mod tests {
             assert!(matches!(&error, ViewError::Ended { .. }), "{error}");
             let works = program(folder.path(), "exit 0");
             start(&works, Path::new("run.rrd")).unwrap();
+        }
+
+        /// It listened on every interface: whoever is in the same network could send it recordings.
+        #[test]
+        fn a_viewer_is_told_the_file_and_to_listen_to_this_machine_only() {
+            let folder = tempfile::tempdir().unwrap();
+            let notes = program(folder.path(), r#"echo "$@" > "$0.told""#);
+            start(&notes, Path::new("run.rrd")).unwrap();
+            let told = std::fs::read_to_string(folder.path().join("rerun.told")).unwrap();
+            assert_eq!(told.trim(), "--bind 127.0.0.1 run.rrd");
         }
     }
 }

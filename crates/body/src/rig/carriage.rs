@@ -62,7 +62,7 @@ impl Carriage for Rig<'_> {
         self.feel(step_s);
         self.way = (self.way + step_s * speed_m_s / RESTING_M) / (1.0 + step_s * speed_m_s.abs() / RESTING_M);
         let rolled: Vec<f64> = self.spin.wheels_m_s.clone();
-        let turned = self.spin.advance(
+        let mut turned = self.spin.advance(
             (push.drive_n, push.way),
             push.brake_n,
             |wheel| self.wheels[wheel].felt.gross_n + self.wheels[wheel].tilting_n,
@@ -95,7 +95,7 @@ impl Carriage for Rig<'_> {
         if self.hops {
             hop::follow(&mut self.wheels, (&before, &self.state), step_s);
         }
-        tilt(&mut self.wheels, &self.spin, (&before, &self.state), step_s);
+        turned.brakes_j -= tilt(&mut self.wheels, &self.spin, (&before, &self.state), step_s);
         let step = Step {
             before: &before,
             after: &self.state,

@@ -4,7 +4,8 @@
 //! I dω/dt = M − Σ J dΩ/dt                what spins a wheel up turns the body back
 //! J dΩ/dt = T − G r − J dω/dt            and what tilts the body slows the wheel in it
 //!
-//! Source: Lagrange's equations of E; I has the wheels in it. dω/dt is that of the step before.
+//! Source: Lagrange's equations of E; I has the wheels in it. dω/dt is that of the step before, and where brakes stop a wheel
+//! within a step, and with that turn the body, that of this one too: the brakes take it.
 
 use crate::chassis::Chassis;
 use crate::ground::Ground;
@@ -116,12 +117,18 @@ pub(super) fn forces(wheels: &[Wheel], spin: &Spin, state: &State, way: f64) -> 
     (force, moment)
 }
 
-/// What keeps wheels turning with a body as it tilts from `before` to `after`.
-pub(super) fn tilt(wheels: &mut [Wheel], spin: &Spin, (before, after): (&State, &State), step_s: f64) {
+/// What keeps wheels turning with a body as it tilts from `before` to `after`; gives what of it acted on wheels that brakes
+/// stopped in this very step, which the brakes did not have to take [J].
+pub(super) fn tilt(wheels: &mut [Wheel], spin: &Spin, (before, after): (&State, &State), step_s: f64) -> f64 {
     let change = (after.turning - before.turning) / step_s;
-    for (wheel, mass_kg) in wheels.iter_mut().zip(&spin.masses_kg) {
-        wheel.tilting_n = mass_kg * wheel.radius_m * wheel.touch.across.dot(change);
+    let mut spared_j = 0.0;
+    for (index, wheel) in wheels.iter_mut().enumerate() {
+        let tilting_n = spin.masses_kg[index] * wheel.radius_m * wheel.touch.across.dot(change);
+        let stopped_m = spin.stopped_m[index];
+        spared_j += tilting_n * stopped_m;
+        wheel.tilting_n = if stopped_m == 0.0 { tilting_n } else { 0.0 };
     }
+    spared_j
 }
 
 /// Kinetic energy of wheels that turn in a body that tilts, beside what each has by itself: J Ω ω [J].

@@ -150,7 +150,33 @@ fn a_start_beyond_the_map_or_on_ground_that_nothing_stands_on_is_refused() {
     assert_eq!(told, BodyError::OffThePath { found_m: 75.0, from_m: 0.0, to_m: 60.0 });
     let cliff = model(Box::new(Cliff(9.0)), soil::<Constant>("(coefficient: 0.02)"));
     let told = Rig::new(&cliff, &chassis, at_rest(), 2e-3).unwrap_err();
-    assert!(matches!(told, BodyError::BelowGround { .. } | BodyError::NoRest), "{told}");
+    assert_eq!(told, BodyError::NoRest);
+    // A vehicle of no mass presses no wheel down.
+    let mut nothing = model(terrain::<Flat>("()"), soil::<Constant>("(coefficient: 0.02)"));
+    nothing.vehicle.mass_kg = 0.0;
+    let told = Rig::new(&nothing, &chassis, at_rest(), 2e-3).unwrap_err();
+    assert_eq!(told, BodyError::NotPositive { name: "mass_kg", found: 0.0 });
+}
+
+/// A tyre of 50 kN/m gives way by 0.6 m and more under its 29 to 35 kN, and has a section of 0.54 m.
+#[test]
+fn a_wheel_that_would_start_below_the_ground_is_refused_by_name() {
+    let mut soft = model(terrain::<Flat>("()"), soil::<Constant>("(coefficient: 0.02)"));
+    let list = [1.6, -2.0].map(|position_m| {
+        let mut axle = super::axle(position_m);
+        axle.tyre.stiffness_n_per_m = Some(5e4);
+        axle
+    });
+    soft.axles = Some(Axles::new(list.into(), 1.3, 0.7, 0.5).unwrap());
+    let told = Rig::new(&soft, &chassis(), at_rest(), 2e-3).unwrap_err();
+    let BodyError::BelowGround { wheel, depth_m, load_kn, most_m } = &told else { panic!("{told}") };
+    let by_hand_kn = 1e-3 * 0.5 * MASS_KG * GRAVITY * 2.0 / 3.6;
+    assert_eq!((wheel.as_str(), *most_m), ("the left wheel of axle 1", 0.54));
+    assert!(
+        (load_kn / by_hand_kn - 1.0).abs() < 0.05 && (depth_m / (load_kn / 50.0) - 1.0).abs() < 1e-6,
+        "{told}"
+    );
+    assert!(told.to_string().contains("m below the ground, with 3"), "{told}");
 }
 
 fn settled(ron: &str) -> Box<dyn Terrain> {

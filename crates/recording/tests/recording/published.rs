@@ -48,6 +48,7 @@ fn every_description_is_tried_here() {
         "baja_coastdown",
         "bmw_i3",
         "camry_dyno",
+        "camry_phases",
         "class8_trucks",
         "compton_challenge",
         "husky_farm",
@@ -100,6 +101,27 @@ fn the_quadricycle_repeats_its_position_speed_and_jumps() {
     );
     assert!(told(&recording, NoticeKind::Jump, "T2_03_30_2021", "at 148 places"));
     assert_eq!(recording.notices.iter().filter(|n| n.kind == NoticeKind::Text).count(), 2);
+}
+
+/// The cold first 505 s take about a seventh more fuel than their hot repeat.
+#[test]
+fn the_phases_of_the_dynamometer_leave_out_where_the_engine_is_off() {
+    let Some(recording) = published("camry_phases") else { return };
+    assert_eq!(recording.runs.len(), 6);
+    let fuel_kg = |id: &str, seconds: f64| -> f64 {
+        let run = recording.runs.iter().find(|run| run.id == id).unwrap();
+        let (time, rate) = (run.trace.time_s(), run.trace.get("fuel_rate_kg_s").unwrap());
+        let pairs = time.windows(2).zip(rate.windows(2));
+        let pairs = pairs.filter(|(time, _)| time[1] - run.trace.time_s()[0] <= seconds);
+        pairs.map(|(time, rate)| 0.5 * (rate[0] + rate[1]) * (time[1] - time[0])).sum()
+    };
+    let ratio = fuel_kg("61811011_cold", 505.0) / fuel_kg("61811011_hot", 505.0);
+    assert!((1.12..1.19).contains(&ratio), "{ratio}");
+    for run in &recording.runs {
+        let off = |rates: &[f64]| rates.iter().all(|rate| *rate == 0.0);
+        let longest = run.trace.get("fuel_rate_kg_s").unwrap().windows(60).any(off);
+        assert!(!longest, "the engine of {} is off for a minute", run.id);
+    }
 }
 
 #[test]

@@ -137,6 +137,8 @@ pub struct System {
     pub residual: Column,
     /// Length of a block of each balance [s].
     pub blocks_s: Vec<f64>,
+    /// Variance that the mean of a row usually has by what lasts and is no physics, where that is known of a balance.
+    pub usual: Vec<Option<f64>>,
 }
 
 /// Rows wanted of a run.
@@ -185,8 +187,10 @@ impl System {
                 all.extend(own);
             }
         }
-        let blocks_s = kept.iter().map(|kind| block_s(*kind)).collect();
-        let mut system = Self { kinds: kept, chunks: all, residual: Vec::new(), blocks_s };
+        let blocks_s: Vec<f64> = kept.iter().map(|kind| block_s(*kind)).collect();
+        let usual = kept.iter().zip(&blocks_s).map(|(kind, block_s)| Some(unsteady(*kind, said)? / block_s));
+        let usual = usual.collect();
+        let mut system = Self { kinds: kept, chunks: all, residual: Vec::new(), blocks_s, usual };
         system.residual = system.residual_of(runs, said);
         system
     }
@@ -293,7 +297,7 @@ impl System {
             let residuals: Vec<&DVector<f64>> = own().map(|(_, values)| values).collect();
             let weights: Vec<Option<&DVector<f64>>> =
                 own().map(|((index, _), _)| tails.map(|tails| tails.weights(index))).collect();
-            Noise::weighted(kind.shape(), most, &residuals, &weights)
+            Noise::weighted(kind.shape(), most, self.usual[number], &residuals, &weights)
         };
         let mut noises = Noises::normal(self.kinds.iter().enumerate().map(of).collect());
         if let Some(before) = before {
@@ -301,6 +305,11 @@ impl System {
             noises.brief.clone_from(&before.brief);
         }
         noises
+    }
+
+    /// ln of how likely the noise is from the start.
+    pub fn prior(&self, noises: &Noises) -> f64 {
+        noises.each.iter().zip(&self.usual).map(|(noise, usual)| noise.prior(*usual)).sum()
     }
 
     /// Mean square of a column over the runs that are `fit`, balance by balance.
@@ -317,6 +326,19 @@ impl System {
         };
         (0..self.kinds.len()).map(of).collect()
     }
+}
+
+/// Spectral density, at the low end, of what usually pulls at a vehicle and is no physics: gusts, a rough surface [N²s].
+fn unsteady(kind: Kind, said: &[Said]) -> Option<f64> {
+    /// Acceleration by it in the mean of one second [m/s²]: a gust of 1 m/s at 20 m/s does that to a car, and a ground whose
+    /// resistance is uneven by a fiftieth to a tractor.
+    const USUAL_M_S2: f64 = 0.01;
+    if kind != Kind::Motion {
+        return None;
+    }
+    let masses = said.iter().filter_map(|said| said.effective_mass_kg.iter().find(|mass| mass.is_finite()));
+    let masses: Vec<f64> = masses.copied().collect();
+    (!masses.is_empty()).then(|| (USUAL_M_S2 * median(&masses)).powi(2))
 }
 
 /// The balances that the channels allow.

@@ -298,6 +298,7 @@ impl<'a> Case<'a> {
             soil_coefficient: walking(model),
             speeds_m_s: [0.2, 0.35, 0.5, 0.65, 0.8].map(quantile),
             range_m_s: (quantile(0.05), quantile(0.98)),
+            fastest_m_s: quantile(1.0),
             one_ratio: model.driveline.force_of_torque_n(1.0, 1.0).is_some(),
             duration_s: self.runs.iter().map(|run| run.measured.trace.duration_s()).fold(0.0, f64::max),
             channels: names

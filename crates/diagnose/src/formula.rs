@@ -216,9 +216,9 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
         "x" => BLOCKS * block_s * median(&speeds).abs(),
         _ => 0.0,
     };
-    // Where no torque was measured a power is made of the acceleration already.
-    let driven = || case.runs.iter().all(|run| run.measured.trace.get("motor_torque_n_m").is_some());
-    let acceleration = of(&|run| run.motion.slope.clone()).filter(|_| kind == Kind::Battery && driven());
+    // Where no force was measured a power is made of the acceleration already.
+    let known = || case.runs.iter().all(|run| run.force_n.is_some());
+    let acceleration = of(&|run| run.acceleration_m_s2.clone()).filter(|_| kind.is_power() && known());
     let slope = channel("grade").map(|runs: Vec<Vec<f64>>| -> Vec<Vec<f64>> {
         runs.iter().map(|grade| grade.iter().map(|grade| grade.atan().sin()).collect()).collect()
     });

@@ -69,6 +69,13 @@ impl Noise {
         (self.sensor + self.process).sqrt()
     }
 
+    /// ln of how likely a world is from the start that is as unsteady as the process makes it, where `usual` is the variance
+    /// that lasting unsteadiness usually has in the mean of a row: by heavy tails, so that a large one costs little.
+    pub fn prior(&self, usual: Option<f64>) -> f64 {
+        let lasting = self.process * (1.0 + self.persistence) / (1.0 - self.persistence);
+        usual.map_or(0.0, |usual| -(lasting / usual).ln_1p())
+    }
+
     /// Covariance of so many rows that follow each other.
     pub fn covariance(&self, rows: usize) -> DMatrix<f64> {
         let beside = self.shape.beside();
@@ -114,14 +121,16 @@ impl Noise {
     /// at most.
     #[cfg(test)]
     pub fn of(shape: Shape, most: f64, residuals: &[&DVector<f64>]) -> Self {
-        Self::weighted(shape, most, residuals, &vec![None; residuals.len()])
+        Self::weighted(shape, most, None, residuals, &vec![None; residuals.len()])
     }
 
     /// The noise that makes residuals (one vector a chunk) most likely; the process correlates neighbouring rows by `most`
-    /// at most. Rows count as much as their weights say, or all alike.
+    /// at most, and lasts with the variance that is `usual`, where any is. Rows count as much as their weights say, or all
+    /// alike.
     pub fn weighted(
         shape: Shape,
         most: f64,
+        usual: Option<f64>,
         residuals: &[&DVector<f64>],
         weights: &[Option<&DVector<f64>>],
     ) -> Self {
@@ -129,10 +138,12 @@ impl Noise {
         let mut best = (f64::INFINITY, nothing);
         let mut place = (0.0, 0.0);
         let mut consider = |share: f64, persistence: f64, place: &mut (f64, f64)| {
-            if let Some(tried) = Self::with(shape, share, persistence, residuals, weights)
-                && tried.0 < best.0
-            {
-                best = tried;
+            let Some((deviance, tried)) = Self::with(shape, share, persistence, residuals, weights) else {
+                return;
+            };
+            let deviance = deviance - 2.0 * tried.prior(usual);
+            if deviance < best.0 {
+                best = (deviance, tried);
                 *place = (share, persistence);
             }
         };

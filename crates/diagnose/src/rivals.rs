@@ -73,9 +73,11 @@ impl State<'_> {
                     reduced.squared_correlation(columns, &part.trial.columns, &nuisance, &self.sd())
                 };
                 let likest = replaced.into_iter().map(|place| (place, like(&place)));
-                // What is like none of them explains something else, and a formula that is one of them says it in other words.
+                // What is like none of them explains something else, and a formula that is one of them says it in other words,
+                // unless those are fewer.
                 let law = self.cause(&part.trial).law.is_some();
-                let other_words = |correlation: f64| law && correlation > OTHER_WORDS;
+                let plainer = self.numbers(&other.parts) < self.numbers(&found.stand.parts);
+                let other_words = |correlation: f64| law && !plainer && correlation > OTHER_WORDS;
                 let likest =
                     likest.filter(|(_, correlation)| *correlation > UNLIKE && !other_words(*correlation));
                 if let Some((place, correlation)) = likest.max_by(|one, other| one.1.total_cmp(&other.1)) {

@@ -376,7 +376,8 @@ impl<'a> State<'a> {
             } else {
                 noises.clone()
             };
-            let score = estimate.log_evidence + self.heavy(&used, &estimate.beta) - self.choices(&parts);
+            let score = estimate.log_evidence + self.heavy(&used, &estimate.beta) - self.choices(&parts)
+                + self.system.prior(&noises);
             let better = best.as_ref().is_none_or(|one| score > one.score + settled);
             if !better && round >= least {
                 break;

@@ -191,7 +191,10 @@ fn beside(
                 && !state.paraphrases(&stand, &found.stand);
             // What says it better than the listed causes, and not by enough, is a doubt of them, whatever it is like.
             let as_short = state.pieces(&stand) <= found.stand.parts.len();
-            let doubtful = sound && as_short && more > DOUBT * margin;
+            // So is what says as much in fewer numbers.
+            let plainer =
+                state.numbers(&stand.parts) < state.numbers(&found.stand.parts) && more > -TOLERANCE;
+            let doubtful = sound && as_short && (plainer || more > DOUBT * margin);
             if able && clearly && better(&stand, &best) {
                 best = Some(stand);
             } else if (able || doubtful) && better(&stand, &as_good) {
@@ -299,6 +302,11 @@ impl State<'_> {
     fn pieces(&self, stand: &Stand) -> usize {
         let of = |part: &Part| self.cause(&part.trial).law.as_ref().map_or(1, |law| law.terms);
         stand.parts.iter().map(of).sum()
+    }
+
+    /// How many numbers are estimated in a set, beside its functions.
+    pub fn numbers(&self, parts: &[Part]) -> usize {
+        parts.iter().map(|part| self.cause(&part.trial).numbers()).sum()
     }
 
     /// Whether the laws of a set are at work in more than a few rows.

@@ -98,30 +98,50 @@ impl Cause {
         Some((place("from_s")?, place("to_s")?))
     }
 
-    /// Whether a shape can be: within its limits, and what lasts has to begin before it ends.
+    /// How many numbers are estimated where it is no function: sizes and shapes, or those of its formula.
+    pub fn numbers(&self) -> usize {
+        let of_law = |law: &LawText| law.constants.iter().filter(|constant| constant.sd.is_some()).count();
+        self.law.as_ref().map_or(self.terms.len(), of_law)
+    }
+
+    /// Places of the speed at which a ramp begins and of its width among the terms, where it has one.
+    fn ramp(&self) -> Option<(usize, usize)> {
+        let place = |name: &str| self.terms.iter().position(|term| term.name == name);
+        Some((place("threshold_m_s")?, place("width_m_s")?))
+    }
+
+    /// Whether a shape can be: within its limits, what lasts has to begin before it ends, and a ramp ends before the fastest
+    /// that its begin can be.
     pub fn possible(&self, shape: &[f64]) -> bool {
         let shapes = self.terms.iter().filter(|term| !term.linear).zip(shape);
         let mut free = shapes.filter(|(term, _)| term.low < term.high);
         if free.any(|(term, value)| !(term.low..=term.high).contains(value)) {
             return false;
         }
-        let Some((from, to)) = self.window() else { return true };
         let place = |term: usize| self.terms[..term].iter().filter(|term| !term.linear).count();
-        match (shape.get(place(from)), shape.get(place(to))) {
-            (Some(from), Some(to)) => from < to,
-            _ => true,
-        }
+        let pair = |places: Option<(usize, usize)>| {
+            places.and_then(|(one, other)| Some((*shape.get(place(one))?, *shape.get(place(other))?)))
+        };
+        let fastest = |(begin, _): (usize, usize)| self.terms[begin].high;
+        pair(self.window()).is_none_or(|(from, to)| from < to)
+            && pair(self.ramp())
+                .zip(self.ramp())
+                .is_none_or(|((begin, width), ramp)| begin + width <= fastest(ramp))
     }
 
-    /// Where a term has to stay so that a window, which has these values, begins before it ends.
+    /// Where a term has to stay so that a window, which has these values, begins before it ends, and a ramp ends in time.
     pub fn within(&self, term: usize, values: &[f64]) -> (f64, f64) {
-        let Some((from, to)) = self.window() else { return (f64::NEG_INFINITY, f64::INFINITY) };
-        // Each has its own side of the middle.
-        let middle = 0.5 * (values[from] + values[to]);
-        match term {
-            term if term == from => (f64::NEG_INFINITY, middle),
-            term if term == to => (middle, f64::INFINITY),
-            _ => (f64::NEG_INFINITY, f64::INFINITY),
+        const ANYWHERE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+        match (self.window(), self.ramp()) {
+            // Each has its own side of the middle.
+            (Some((from, to)), _) if term == from => (f64::NEG_INFINITY, 0.5 * (values[from] + values[to])),
+            (Some((from, to)), _) if term == to => (0.5 * (values[from] + values[to]), f64::INFINITY),
+            // What is left until the end is shared in halves.
+            (_, Some((begin, width))) if term == begin || term == width => {
+                let left = self.terms[begin].high - values[begin] - values[width];
+                (f64::NEG_INFINITY, values[term] + 0.5 * left)
+            }
+            _ => ANYWHERE,
         }
     }
 
@@ -270,7 +290,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_window_begins_before_it_ends() {
+    fn a_window_begins_before_it_ends_and_a_ramp_ends_where_somebody_drove() {
         let term = |name, linear| Term { name, unit: "", scale: 1.0, linear, low: 0.0, high: f64::INFINITY };
         let mut window = spell("drawbar_load");
         window.terms = vec![term("force_n", true), term("from_s", false), term("to_s", false)];
@@ -281,6 +301,12 @@ mod tests {
         assert_eq!(window.within(0, &values), (f64::NEG_INFINITY, f64::INFINITY));
         assert_eq!(window.within(1, &values).1, 4.0);
         assert_eq!(window.within(2, &values).0, 4.0);
+        let mut ramp = spell("speed_threshold");
+        let speed = |name| Term { high: 8.0, ..term(name, false) };
+        ramp.terms = vec![term("force_n", true), speed("threshold_m_s"), term("width_m_s", false)];
+        assert!(ramp.possible(&[2.0, 6.0]) && !ramp.possible(&[2.0, 6.5]) && !ramp.possible(&[9.0, 0.1]));
+        assert_eq!(ramp.within(1, &[300.0, 2.0, 4.0]).1, 3.0);
+        assert_eq!(ramp.within(2, &[300.0, 2.0, 4.0]).1, 5.0);
         window.terms.truncate(1);
         assert!(window.possible(&[]) && window.within(0, &[300.0]).0.is_infinite());
     }

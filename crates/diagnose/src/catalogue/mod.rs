@@ -30,6 +30,8 @@ pub struct Around {
     pub speeds_m_s: [f64; 5],
     /// Speeds below which 5 and 98 % of the samples lie [m/s].
     pub range_m_s: (f64, f64),
+    /// The greatest speed [m/s].
+    pub fastest_m_s: f64,
     /// Whether motor and wheels turn at one ratio: there is no variator then, and nothing to shift.
     pub one_ratio: bool,
     /// Longest run [s].
@@ -179,8 +181,9 @@ fn chosen(speeds: &[f64], count: usize) -> Vec<Vec<f64>> {
 
 /// Losses between so many mechanical points.
 fn variator_loss(around: &Around, count: usize) -> Cause {
+    let node = shape("node_speed_m_s", "m/s").within(0.0, around.fastest_m_s);
     let mut terms = vec![positive("loss", "1", 0.1)];
-    terms.extend(std::iter::repeat_n(shape("node_speed_m_s", "m/s"), count));
+    terms.extend(std::iter::repeat_n(node, count));
     let nodes = chosen(&around.speeds_m_s, count).into_iter();
     let nodes = nodes.map(|speeds| speeds.into_iter().map(|speed| speed.max(0.5)).collect());
     cause(
@@ -418,7 +421,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             MOTION,
             vec![
                 positive("force_n", "N", 0.015 * weight),
-                shape("threshold_m_s", "m/s"),
+                shape("threshold_m_s", "m/s").within(0.0, around.fastest_m_s),
                 shape("width_m_s", "m/s"),
             ],
             "F = F₀ clamp((v − v₀)/b, 0, 1)",
@@ -431,6 +434,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
                 .speeds_m_s
                 .iter()
                 .flat_map(|v| [vec![*v, 0.1 * v.max(0.5)], vec![*v, 0.5 * v.max(0.5)]])
+                .filter(|shape| shape.iter().sum::<f64>() <= around.fastest_m_s)
                 .collect(),
         ),
     ];

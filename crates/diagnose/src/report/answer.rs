@@ -42,8 +42,9 @@ pub fn report(
     } else {
         findings.extend(beside.faults.iter().map(|fault| faulty(fault, system)));
     }
-    let verdict = if beside.withheld.is_some() { Verdict::CannotTell } else { verdict(&findings) };
     let fit = fit(case, system, Some(found), proof);
+    let verdict =
+        if beside.withheld.is_some() { Verdict::CannotTell } else { verdict(&findings, fit.lack_of_fit) };
     notes.extend(remarks(case, &found.unproven));
     let mut null_space = refined.null_space.clone();
     for finding in &findings {

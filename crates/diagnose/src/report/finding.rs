@@ -123,10 +123,14 @@ impl FindingReport {
 }
 
 /// What a diagnosis says in a word. Beside what is certain, one cause in doubt leaves open what is missing; it takes nothing
-/// from a sensor's fault.
-pub fn verdict(findings: &[FindingReport]) -> Verdict {
+/// from a sensor's fault. Where no cause is claimed and far more than noise is left, something is missing all the same.
+pub fn verdict(findings: &[FindingReport], lack_of_fit: f64) -> Verdict {
+    /// An error of so many times the noise is no matter of how well the noise is known.
+    const FAR: f64 = 10.0;
     let any = |kind: FindingKind| findings.iter().any(|finding| finding.kind == kind);
-    if findings.is_empty() {
+    if findings.is_empty() && lack_of_fit > FAR {
+        Verdict::CannotTell
+    } else if findings.is_empty() {
         Verdict::None
     } else if findings.first().is_some_and(|finding| finding.kind == FindingKind::Unlisted) {
         Verdict::Unlisted
@@ -384,6 +388,10 @@ mod tests {
         let sure = || finding(Physics, "wind", None);
         let doubtful = || finding(Physics, "grade", Some("soft_ground"));
         let fault = || finding(Artefact, "accelerometer_bias", Some("accelerometer_tilt"));
+        let verdict = |findings: &[FindingReport]| super::verdict(findings, 3.0);
+        assert_eq!(super::verdict(&[], 40.0), Verdict::CannotTell);
+        assert_eq!(super::verdict(&[sure()], 40.0), Verdict::MissingPhysics);
+        assert_eq!(super::verdict(&[], f64::NAN), Verdict::None);
         assert_eq!(verdict(&[]), Verdict::None);
         assert_eq!(verdict(&[sure()]), Verdict::MissingPhysics);
         assert_eq!(verdict(&[sure(), doubtful()]), Verdict::CannotTell);

@@ -41,6 +41,10 @@ pub fn answer(told: &Told) -> String {
             "Nothing is missing: what differs is explained by the free parameters within their priors and by noise."
                 .to_owned(),
         ),
+        Verdict::CannotTell if told.withheld.is_none() && told.findings.is_empty() => sentences.push(
+            "Something is missing, and no cause explains it in these recordings better than chance would, so none is claimed."
+                .to_owned(),
+        ),
         Verdict::CannotTell if told.withheld.is_none() => sentences.push(
             if told.findings.first().is_some_and(FindingReport::is_doubtful) {
                 "Something is missing, and these recordings cannot tell which of several causes it is."

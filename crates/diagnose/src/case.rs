@@ -69,8 +69,8 @@ pub(crate) struct Case<'a> {
     pub raw: Vec<Recorded>,
     /// Faults of sensors that the runs were corrected for, and by how much.
     pub corrections: Vec<Correction>,
-    /// Faults that turned out to be too small for anybody to mind.
-    pub petty: Vec<&'static str>,
+    /// Faults that turned out to be none.
+    pub no_faults: Vec<&'static str>,
     /// The causes that are tried, where it is not all of them.
     pub only: Option<BTreeSet<usize>>,
     /// Names of the paths, by the number that the runs have of them; none where a run drove alone.
@@ -124,7 +124,7 @@ impl<'a> Case<'a> {
             raw: runs.clone(),
             runs,
             corrections: Vec::new(),
-            petty: Vec::new(),
+            no_faults: Vec::new(),
             only: None,
             paths,
             nominal: Vec::new(),

@@ -60,6 +60,7 @@ mod split;
 mod standin;
 mod state;
 mod straying;
+mod stuck;
 mod student;
 mod tails;
 mod together;

@@ -107,14 +107,14 @@ impl Look {
         }
         let small: Vec<&'static str> = corrections
             .iter()
-            .filter(|correction| sensors::petty(case, correction.id, correction.value))
+            .filter(|correction| sensors::is_none(case, correction.id, correction.value))
             .map(|correction| correction.id)
             .collect();
         if !more && small.is_empty() {
             return Ok(false);
         }
         corrections.retain(|correction| !small.contains(&correction.id));
-        case.petty.extend(small);
+        case.no_faults.extend(small);
         case.correct(corrections)?;
         Ok(true)
     }
@@ -128,7 +128,10 @@ impl Look {
         const CLEARLY: f64 = 1.7;
         const ID: &str = "latency";
         let known = |id: &str| id == ID;
-        if !case.wanted(ID) || case.corrections.iter().any(|one| known(one.id)) || case.petty.contains(&ID) {
+        if !case.wanted(ID)
+            || case.corrections.iter().any(|one| known(one.id))
+            || case.no_faults.contains(&ID)
+        {
             return None;
         }
         let column = self.pool.small.iter().find(|(id, _)| known(id))?.1;
@@ -249,7 +252,7 @@ fn again(case: &Case, system: &System, pool: &mut Pool, parts: &[Part]) -> Resul
         let wanted = &part.trial;
         let id = case.causes[wanted.cause].id;
         let corrected = case.corrections.iter().any(|correction| correction.id == id);
-        if corrected || case.petty.contains(&id) {
+        if corrected || case.no_faults.contains(&id) {
             continue;
         }
         let same = |trial: &&Trial| {

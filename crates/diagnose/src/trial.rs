@@ -99,7 +99,7 @@ pub fn pool(case: &Case, system: &System) -> Result<Pool, DiagnoseError> {
         case.step(cause.id)?;
         let corrected = case.corrections.iter().any(|correction| correction.id == cause.id);
         let out = case.only.as_ref().is_some_and(|only| !only.contains(&number));
-        if out || corrected || case.petty.contains(&cause.id) {
+        if out || corrected || case.no_faults.contains(&cause.id) {
             continue;
         }
         for shape in &cause.shapes {

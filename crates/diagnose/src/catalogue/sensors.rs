@@ -8,6 +8,9 @@ use crate::balance::Kind;
 /// Clocks that run apart by more than this share of the time are broken.
 const MOST_DRIFT: f64 = 0.03;
 
+/// A sensor that is wrong by more than this share has another unit, or is broken.
+pub const MOST_SCALE: f64 = 0.4;
+
 /// Adds the faults that these channels can have.
 pub fn sensors(all: &mut Vec<Cause>, around: &Around) {
     let artefact = |id, balances, term: Term, equation, words, experiment| {
@@ -41,7 +44,7 @@ pub fn sensors(all: &mut Vec<Cause>, around: &Around) {
         all.push(artefact(
             "force_scale",
             &[Kind::Motion, Kind::Battery],
-            linear("scale", "1", 0.05),
+            linear("scale", "1", 0.05).within(-MOST_SCALE, MOST_SCALE),
             "F_measured = (1 + k) F",
             "a force sensor with a wrong scale",
             "hang a known weight on it, or tow with a load cell",
@@ -50,7 +53,7 @@ pub fn sensors(all: &mut Vec<Cause>, around: &Around) {
     all.push(artefact(
         "speed_scale",
         &[Kind::Motion, Kind::Slip, Kind::Battery],
-        linear("scale", "1", 0.03),
+        linear("scale", "1", 0.03).within(-MOST_SCALE, MOST_SCALE),
         "v_measured = (1 + k) v",
         "a speed sensor with a wrong scale",
         "drive a measured mile",

@@ -88,7 +88,7 @@ impl<'a> Stage<'a> {
             raw: runs.clone(),
             runs,
             corrections: case.corrections.clone(),
-            petty: case.petty.clone(),
+            no_faults: case.no_faults.clone(),
             only: None,
             nominal: Vec::new(),
             rows: case.rows,

@@ -11,7 +11,7 @@ use crate::{Case, DiagnoseError, bend, sensors, sharpen, straying};
 use std::collections::BTreeSet;
 
 /// A search from nothing takes long with more rows than this; what was found before is then where the next one starts.
-pub const MANY_ROWS: usize = 12_000;
+pub const MANY_ROWS: usize = 16_000;
 
 /// The rows, the regressors and what they tell.
 pub struct Look {

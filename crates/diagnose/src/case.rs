@@ -14,7 +14,7 @@ use crate::standin::prepared;
 use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
 use headland_calibrate::study::Study;
 use headland_plugin::{Contact, Registry, closest};
-use headland_recording::Recording;
+use headland_recording::{Recording, Sensor};
 use headland_scenario::Scenario;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -73,6 +73,8 @@ pub(crate) struct Case<'a> {
     pub no_faults: Vec<&'static str>,
     /// The causes that are tried, where it is not all of them.
     pub only: Option<BTreeSet<usize>>,
+    /// What is known of the sensors: channel and sensor.
+    pub sensors: Vec<(String, Sensor)>,
     /// Names of the paths, by the number that the runs have of them; none where a run drove alone.
     pub paths: Vec<Option<String>>,
     /// What the nominal model says.
@@ -125,6 +127,7 @@ impl<'a> Case<'a> {
             runs,
             corrections: Vec::new(),
             no_faults: Vec::new(),
+            sensors: recording.runs.iter().flat_map(|run| run.sensors.clone()).collect(),
             only: None,
             paths,
             nominal: Vec::new(),

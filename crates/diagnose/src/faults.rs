@@ -4,6 +4,7 @@ use crate::filled::filled;
 use crate::recorded::Recorded;
 use crate::report::Interval;
 use crate::stuck::{LEAP, still, stuck, usual_step};
+use headland_recording::Sensor;
 
 /// A fault of a channel.
 #[derive(Clone, Debug)]
@@ -24,11 +25,13 @@ pub struct Fault {
 const REPEATED: f64 = 0.35;
 /// A coarse channel mostly changes by fewer steps than this.
 const FEW_STEPS: f64 = 2.5;
+/// A step over the standard deviation of what it is off by: the square root of twelve.
+const ERRORS_IN_A_STEP: f64 = 3.464;
 /// A gap is so many times the usual period.
 const GAP: f64 = 3.5;
 /// Lost time that matters, as a share.
 const LOST: f64 = 0.01;
-/// Buses give torques in steps of about a per cent of their range; that is no fault.
+/// Buses give torques and fuel in steps of about a per cent of their range; that is no fault.
 const BUS: f64 = 0.025;
 /// Below this the vehicle stands, and channels may well be still [m/s].
 pub const SLOWEST_M_S: f64 = 0.5;
@@ -44,7 +47,7 @@ pub const LOOKED_AT: [&str; 6] = [
 ];
 
 /// The faults of all runs, and the samples that may be used.
-pub fn faults(drives: &[Recorded]) -> (Vec<Fault>, Vec<Vec<bool>>) {
+pub fn faults(drives: &[Recorded], sensors: &[(String, Sensor)]) -> (Vec<Fault>, Vec<Vec<bool>>) {
     let known = |drive: &Recorded| match &drive.unknown {
         unknown if unknown.is_empty() => vec![true; drive.measured.trace.len()],
         unknown => unknown.iter().map(|unknown| !unknown).collect(),
@@ -55,12 +58,14 @@ pub fn faults(drives: &[Recorded]) -> (Vec<Fault>, Vec<Vec<bool>>) {
     for name in LOOKED_AT {
         if let Some(fault) = stuck(drives, name, &mut usable) {
             all.push(fault);
-        } else if let Some(fault) = coarse(drives, name) {
-            all.push(fault);
+        } else {
+            all.extend(coarse(drives, name, sensors));
         }
         all.extend(missing(drives, name));
         all.extend(nought(drives, name, &mut usable));
     }
+    // It stays the same where an engine idles, and ends where it is pushed.
+    all.extend(coarse(drives, "fuel_rate_kg_s", sensors));
     all.extend(lost(drives));
     all.extend(filled(drives, &mut usable));
     (all, usable)
@@ -84,7 +89,7 @@ pub fn place(drive: &Recorded, from: usize, to: usize) -> Interval {
     }
 }
 
-fn coarse(drives: &[Recorded], name: &str) -> Option<Fault> {
+fn coarse(drives: &[Recorded], name: &str, sensors: &[(String, Sensor)]) -> Option<Fault> {
     let (mut repeated, mut count) = (0usize, 0usize);
     let mut steps: Vec<f64> = Vec::new();
     for drive in drives {
@@ -108,8 +113,11 @@ fn coarse(drives: &[Recorded], name: &str) -> Option<Fault> {
     let multiples = steps.iter().filter(whole).count() as f64 / steps.len() as f64;
     // A channel that is held between samples repeats itself too, but then changes by many of its smallest steps.
     let usual = steps[steps.len() / 2];
-    let torque = name.ends_with("_n_m") || name == "tractive_force_n";
-    let coarse = (!torque || step > BUS * reach(drives, name))
+    let bus = name.ends_with("_n_m") || ["tractive_force_n", "fuel_rate_kg_s"].contains(&name);
+    // More than the noise that is known of a sensor is a fault.
+    let noise = sensors.iter().find(|(own, _)| own == name).and_then(|(_, sensor)| sensor.noise);
+    let loud = noise.is_some_and(|noise| step > ERRORS_IN_A_STEP * noise);
+    let coarse = (!bus || loud || step > BUS * reach(drives, name))
         && repeated as f64 > REPEATED * count as f64
         && multiples > 0.97
         && usual < FEW_STEPS * step

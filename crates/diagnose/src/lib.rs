@@ -101,7 +101,7 @@ pub fn diagnose(
     progress: &dyn Progress,
 ) -> Result<Diagnosed, DiagnoseError> {
     let mut case = Case::new(scenario, recording, registry, options, progress)?;
-    let (mut faults, sound) = faults::faults(&case.runs);
+    let (mut faults, sound) = faults::faults(&case.runs, &case.sensors);
     faults.retain(|fault| case.wanted(fault.id));
     case.sound.clone_from(&sound);
     let against = contradiction::statements(&case, &sound);

@@ -3,7 +3,7 @@
 use super::setting::{found, named, recording_of};
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{Diagnosed, Options};
-use headland_recording::Recording;
+use headland_recording::{Recording, Sensor};
 
 /// The five drives with these channels, each sample changed as is said: name, sample, a draw of noise.
 fn recorded(effects: &str, channels: &[&str], sensor: impl Fn(&str, f64, f64) -> f64) -> Recording {
@@ -89,4 +89,21 @@ fn a_coarse_speed_contradicts_no_force() {
     let found = found(&coarse, &Options::default()).unwrap();
     assert!(named(&found, "quantisation"), "{}", found.diagnosis.answer);
     assert_eq!(found.diagnosis.findings.len(), 1, "{}", found.diagnosis.answer);
+}
+
+/// A bus gives forces in steps of about a per cent of their range; a sensor whose noise is known to be far less does not.
+#[test]
+fn steps_are_a_fault_where_they_hide_the_noise_that_is_known() {
+    const STEP_N: f64 = 250.0;
+    let mut recording = super::changed(&super::recorded(0.07, ""), "tractive_force_n", |force, _, _| {
+        STEP_N * (force / STEP_N).round()
+    });
+    let silent = found(&recording, &Options::default()).unwrap();
+    assert!(!named(&silent, "quantisation"), "{}", silent.diagnosis.answer);
+    let known = Sensor { noise: Some(0.2 * STEP_N), ..Sensor::default() };
+    for run in &mut recording.runs {
+        run.sensors.push(("tractive_force_n".to_owned(), known.clone()));
+    }
+    let told = found(&recording, &Options::default()).unwrap();
+    assert!(named(&told, "quantisation"), "{}", told.diagnosis.answer);
 }

@@ -4,12 +4,13 @@ use super::finding::{faulty, findings, verdict};
 use super::series::{corrections, effects, residuals};
 use super::shown::shown;
 use super::{Calibrated, Diagnosed, Diagnosis, Fit, FitRuns, Tried, Verdict, bands};
+use crate::catalogue::Form;
 use crate::events::Event;
 use crate::experiment::Proposals;
 use crate::faults::Fault;
 use crate::map::map;
 use crate::prove::{Errors, Proof, prove};
-use crate::refine::{Free, HALF_95, Refined};
+use crate::refine::{Cured, Free, HALF_95, Refined};
 use crate::search::Found;
 use crate::{Case, DiagnoseError, System, words};
 use headland_units::unit_of_name;
@@ -43,8 +44,11 @@ pub fn report(
         findings.extend(beside.faults.iter().map(|fault| faulty(fault, system)));
     }
     let fit = fit(case, system, Some(found), proof);
-    let verdict =
-        if beside.withheld.is_some() { Verdict::CannotTell } else { verdict(&findings, fit.lack_of_fit) };
+    let verdict = if beside.withheld.is_some() {
+        Verdict::CannotTell
+    } else {
+        verdict(&findings, fit.lack_of_fit, timed(refined))
+    };
     notes.extend(remarks(case, &found.unproven));
     let mut null_space = refined.null_space.clone();
     for finding in &findings {
@@ -151,6 +155,16 @@ pub fn inconclusive(
         residuals: Vec::new(),
         shown: shown(case, system, None, &refined, &proof).unwrap_or_default(),
     })
+}
+
+/// Whether anything that was found is what each run tells of itself alone: a function of time, or spells.
+fn timed(refined: &Refined) -> bool {
+    let own = |cured: &Cured| {
+        !cured.events.is_empty()
+            || cured.cause.run.is_some()
+            || cured.function().is_some() && cured.cause.form == Form::OverTime && !cured.cause.by_run
+    };
+    refined.causes.iter().any(own)
 }
 
 fn ids(case: &Case, wanted: bool) -> Vec<String> {

@@ -123,18 +123,21 @@ impl FindingReport {
 }
 
 /// What a diagnosis says in a word. Beside what is certain, one cause in doubt leaves open what is missing; it takes nothing
-/// from a sensor's fault. Where no cause is claimed and far more than noise is left, something is missing all the same.
-pub fn verdict(findings: &[FindingReport], lack_of_fit: f64) -> Verdict {
+/// from a sensor's fault. Where far more than noise is left, something is missing all the same: no cause is claimed then, or
+/// what is claimed may stand in for it, unless it is `timed` and no run can show it of another.
+pub fn verdict(findings: &[FindingReport], lack_of_fit: f64, timed: bool) -> Verdict {
     /// An error of so many times the noise is no matter of how well the noise is known.
     const FAR: f64 = 10.0;
+    let far = lack_of_fit > FAR;
     let any = |kind: FindingKind| findings.iter().any(|finding| finding.kind == kind);
-    if findings.is_empty() && lack_of_fit > FAR {
-        Verdict::CannotTell
-    } else if findings.is_empty() {
-        Verdict::None
-    } else if findings.first().is_some_and(|finding| finding.kind == FindingKind::Unlisted) {
+    let Some(first) = findings.first() else {
+        return if far { Verdict::CannotTell } else { Verdict::None };
+    };
+    let doubtful = any(FindingKind::Physics) && far && !timed;
+    if first.kind == FindingKind::Unlisted {
         Verdict::Unlisted
-    } else if findings.first().is_some_and(FindingReport::is_doubtful)
+    } else if first.is_doubtful()
+        || doubtful
         || !any(FindingKind::Artefact) && findings.iter().any(FindingReport::is_doubtful)
     {
         Verdict::CannotTell
@@ -388,10 +391,7 @@ mod tests {
         let sure = || finding(Physics, "wind", None);
         let doubtful = || finding(Physics, "grade", Some("soft_ground"));
         let fault = || finding(Artefact, "accelerometer_bias", Some("accelerometer_tilt"));
-        let verdict = |findings: &[FindingReport]| super::verdict(findings, 3.0);
-        assert_eq!(super::verdict(&[], 40.0), Verdict::CannotTell);
-        assert_eq!(super::verdict(&[sure()], 40.0), Verdict::MissingPhysics);
-        assert_eq!(super::verdict(&[], f64::NAN), Verdict::None);
+        let verdict = |findings: &[FindingReport]| super::verdict(findings, 3.0, false);
         assert_eq!(verdict(&[]), Verdict::None);
         assert_eq!(verdict(&[sure()]), Verdict::MissingPhysics);
         assert_eq!(verdict(&[sure(), doubtful()]), Verdict::CannotTell);
@@ -399,5 +399,17 @@ mod tests {
         assert_eq!(verdict(&[fault(), doubtful()]), Verdict::Both);
         assert_eq!(verdict(&[doubtful(), fault()]), Verdict::CannotTell);
         assert_eq!(verdict(&[finding(FindingKind::Unlisted, "unlisted", None), sure()]), Verdict::Unlisted);
+    }
+
+    #[test]
+    fn what_is_far_from_the_noise_is_not_nothing_and_what_leaves_it_is_no_certainty() {
+        use FindingKind::{Artefact, Physics};
+        let sure = [finding(Physics, "wind", None)];
+        let fault = [finding(Artefact, "latency", None)];
+        assert_eq!(verdict(&[], 40.0, false), Verdict::CannotTell);
+        assert_eq!(verdict(&[], f64::NAN, false), Verdict::None);
+        assert_eq!(verdict(&sure, 40.0, false), Verdict::CannotTell);
+        assert_eq!(verdict(&sure, 40.0, true), Verdict::MissingPhysics);
+        assert_eq!(verdict(&fault, 40.0, false), Verdict::SensorArtefact);
     }
 }

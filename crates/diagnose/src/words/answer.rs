@@ -46,7 +46,9 @@ pub fn answer(told: &Told) -> String {
                 .to_owned(),
         ),
         Verdict::CannotTell if told.withheld.is_none() => sentences.push(
-            if told.findings.first().is_some_and(FindingReport::is_doubtful) {
+            if !told.findings.iter().any(FindingReport::is_doubtful) {
+                "More is missing than was found, and what was found may stand in for it, so that nothing of it is certain."
+            } else if told.findings.first().is_some_and(FindingReport::is_doubtful) {
                 "Something is missing, and these recordings cannot tell which of several causes it is."
             } else {
                 "Something is missing, and of a part of it these recordings cannot tell which of several causes it is."

@@ -4,23 +4,25 @@ use crate::entity::{self, Who};
 use crate::flow;
 use crate::groups::{Group, Rank};
 use crate::lanes::Lane;
-use crate::layout::{LEGEND, Layout, Node, WIDE_LEGEND};
+use crate::layout::{COLUMN, LEGEND, Layout, Look, Node, WIDE_LEGEND};
 use crate::path::Pose;
 use crate::plots::{BESIDE, COMPARED, residual};
+use crate::recorder::Recorder;
 use crate::{Scene, ViewError};
 use rerun::external::re_sdk_types::blueprint::archetypes::{Background, EyeControls3D, LineGrid3D};
 use rerun::external::re_sdk_types::blueprint::components::{BackgroundKind, ContainerKind};
 use rerun::log::LogMsg;
 use rerun::{ApplicationId, AsComponents, EntityPath};
+use std::mem::take;
 
 /// The messages that make the layout, and the one that puts it into force.
 pub(crate) fn messages(
-    application: &ApplicationId,
+    (application, drawn): (&ApplicationId, &Recorder),
     scene: &Scene,
     groups: &[Group],
     lanes: &[Lane],
 ) -> Result<Vec<LogMsg>, ViewError> {
-    let mut layout = Scenic { layout: Layout::new(application)?, times_s: times_s(lanes) };
+    let mut layout = Scenic { layout: Layout::new(application)?, drawn, times_s: times_s(lanes) };
     let space = layout.space(scene, lanes)?;
     let text = layout.layout.view("TextDocument", "About", &[entity::summary()], &[])?;
     let (right, rest) = layout.plots(scene, groups, lanes)?;
@@ -39,6 +41,11 @@ const SKY: [u8; 3] = [34, 44, 56];
 /// What a plot needs beside the lines of its legend, in such lines: its title and its times. (The viewer gives a legend four
 /// fifths of the plot, so such a line is a quarter higher than one of text.)
 const FRAME_LINES: f32 = 1.7;
+/// The least share of a plot: with less no numbers have room.
+const LEAST: f32 = 4.7;
+/// Height of a row of tabs above plots, and of the plots below the vehicle [points].
+const TABS: f64 = 24.0;
+const ASIDE: f64 = 225.0;
 
 /// First and last time of all runs [s].
 fn times_s(lanes: &[Lane]) -> [f64; 2] {
@@ -60,13 +67,22 @@ fn main_heading_rad(poses: &[Pose], start_rad: f64) -> f64 {
     }
 }
 
+/// A plot that is to be.
+struct Wanted {
+    title: String,
+    lines: Vec<EntityPath>,
+    room: f64,
+    share: f32,
+}
+
 /// The layout of a scene.
-struct Scenic {
+struct Scenic<'a> {
     layout: Layout,
+    drawn: &'a Recorder,
     times_s: [f64; 2],
 }
 
-impl Scenic {
+impl Scenic<'_> {
     /// The world, seen from beside the first vehicle, which the eye follows.
     fn space(&mut self, scene: &Scene, lanes: &[Lane]) -> Result<Node, ViewError> {
         let Some((first, pose)) = lanes.first().zip(lanes.first().and_then(|lane| lane.path.poses.first()))
@@ -115,7 +131,7 @@ impl Scenic {
 
     /// What all runs are held beside one another by.
     fn overview(&mut self, lanes: &[Lane]) -> Result<Node, ViewError> {
-        let mut plots = Vec::with_capacity(BESIDE.len());
+        let mut wanted = Vec::with_capacity(BESIDE.len());
         for (channel, title, _) in BESIDE {
             let knows = |lane: &&Lane| lane.run.trace.channel(channel).is_some();
             let lines: Vec<EntityPath> = lanes
@@ -131,9 +147,14 @@ impl Scenic {
                 })
                 .collect();
             if !lines.is_empty() {
-                plots.push(self.plot(title, &lines)?);
+                wanted.push((title, lines));
             }
         }
+        let height = (COLUMN - TABS) / wanted.len() as f64;
+        let plots = wanted
+            .iter()
+            .map(|(title, lines)| self.plot(title, lines, (LEGEND, height)))
+            .collect::<Result<Vec<_>, _>>()?;
         if let [only] = plots.as_slice() {
             return Ok(only.clone());
         }
@@ -149,7 +170,7 @@ impl Scenic {
         name: Option<&str>,
     ) -> Result<(Node, Option<Node>), ViewError> {
         let id = &lane.run.id;
-        let (mut parts, mut shares) = (Vec::new(), Vec::new());
+        let mut wanted = Vec::new();
         let (mut wheels, mut rest) = (Vec::new(), Vec::new());
         for group in groups {
             let lines: Vec<EntityPath> = group
@@ -174,54 +195,72 @@ impl Scenic {
                 .iter()
                 .map(|channel| knows(Some(lane.run), channel) + knows(lane.recording, channel))
                 .sum();
-            let share = FRAME_LINES + drawn as f32;
+            let share = (FRAME_LINES + drawn as f32).max(LEAST);
             let room = if group.rank == Rank::More && name.is_none() { WIDE_LEGEND } else { LEGEND };
-            let plot = self.layout.plot(&group.title, &lines, self.times_s, room)?;
+            let plot = Wanted { title: group.title.clone(), lines, room, share };
             match group.rank {
                 Rank::Main => {}
                 Rank::Wheels => {
-                    wheels.push((plot, share));
+                    wheels.push(plot);
                     continue;
                 }
                 Rank::More => {
-                    rest.push((plot, share));
+                    rest.push(plot);
                     continue;
                 }
             }
-            parts.push(plot);
-            shares.push(share);
+            wanted.push(plot);
             let compared = lane.recording.is_some_and(|recording| residual(lane.run, recording).is_some());
             if compared && group.channels.iter().any(|channel| channel == COMPARED) {
-                parts.push(
-                    self.plot("Speed residual [m/s]", &[entity::channel(id, COMPARED, Who::Residual)])?,
-                );
-                shares.push(FRAME_LINES + 1.0);
+                let lines = vec![entity::channel(id, COMPARED, Who::Residual)];
+                let title = "Speed residual [m/s]".to_owned();
+                wanted.push(Wanted { title, lines, room: LEGEND, share: LEAST });
             }
         }
         let flows: Vec<EntityPath> =
             flow::flows(scene, groups, lane.run).iter().map(|flow| entity::flow(id, &flow.name)).collect();
         if !flows.is_empty() {
-            parts.push(self.plot(flow::TITLE, &flows)?);
-            shares.push(FRAME_LINES + flows.len() as f32);
+            let share = FRAME_LINES + flows.len() as f32;
+            wanted.push(Wanted { title: flow::TITLE.to_owned(), lines: flows, room: LEGEND, share });
         }
-        let mut apart = None;
-        for (title, tabs, stays) in [("Wheels", wheels, true), ("More", rest, name.is_some())] {
-            let (tabs, needed): (Vec<Node>, Vec<f32>) = tabs.into_iter().unzip();
-            let Some(share) = needed.first() else { continue };
-            let tabs = self.layout.split(ContainerKind::Tabs, title, &tabs, &[])?;
-            if stays || parts.is_empty() {
-                parts.push(tabs);
-                shares.push(*share);
-            } else {
-                apart = Some(tabs);
+        // The rest of a run that is alone stands below the vehicle.
+        let apart = (name.is_none() && !(wanted.is_empty() && wheels.is_empty())).then(|| take(&mut rest));
+        let mut shares: Vec<f32> = wanted.iter().map(|plot| plot.share).collect();
+        shares.extend([&wheels, &rest].into_iter().filter_map(|tabs| tabs.first()).map(|plot| plot.share));
+        let column = if name.is_some() { COLUMN - TABS } else { COLUMN };
+        let point = column / f64::from(shares.iter().sum::<f32>());
+        let mut parts = Vec::with_capacity(shares.len());
+        for plot in &wanted {
+            parts.push(self.plot(&plot.title, &plot.lines, (plot.room, point * f64::from(plot.share)))?);
+        }
+        for (title, tabs) in [("Wheels", &wheels), ("More", &rest)] {
+            if let Some(first) = tabs.first() {
+                parts.push(self.tabs(title, tabs, point * f64::from(first.share))?);
             }
         }
+        let apart = apart.filter(|tabs| !tabs.is_empty());
+        let apart = apart.map(|tabs| self.tabs("More", &tabs, ASIDE)).transpose()?;
         let column = self.layout.split(ContainerKind::Vertical, name.unwrap_or_default(), &parts, &shares)?;
         Ok((column, apart))
     }
 
-    fn plot(&mut self, title: &str, lines: &[EntityPath]) -> Result<Node, ViewError> {
-        self.layout.plot(title, lines, self.times_s, LEGEND)
+    fn plot(
+        &mut self,
+        title: &str,
+        lines: &[EntityPath],
+        (room, height): (f64, f64),
+    ) -> Result<Node, ViewError> {
+        let look = Look { times_s: self.times_s, room, span: self.drawn.span(lines), height };
+        self.layout.plot(title, lines, look)
+    }
+
+    /// Plots of which one is seen.
+    fn tabs(&mut self, title: &str, plots: &[Wanted], height: f64) -> Result<Node, ViewError> {
+        let plots = plots
+            .iter()
+            .map(|plot| self.plot(&plot.title, &plot.lines, (plot.room, height)))
+            .collect::<Result<Vec<_>, _>>()?;
+        self.layout.split(ContainerKind::Tabs, title, &plots, &[])
     }
 }
 

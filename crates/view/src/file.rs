@@ -113,7 +113,7 @@ pub(crate) fn messages(scene: &Scene) -> Result<Vec<LogMsg>, ViewError> {
     }
     let text = TextDocument::from_markdown(summary::summary(scene, &scales, &grounds));
     to.fixed(&entity::summary(), &text)?;
-    let mut messages = blueprint::messages(&application, scene, &groups, &lanes)?;
+    let mut messages = blueprint::messages((&application, &to), scene, &groups, &lanes)?;
     messages.extend(to.finish());
     Ok(messages)
 }

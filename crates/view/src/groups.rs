@@ -80,7 +80,7 @@ pub(crate) fn groups(scene: &Scene) -> Vec<Group> {
         let place = groups.iter().take_while(|group| group.rank == Rank::Main).count();
         groups.insert(
             place,
-            Group { title: "Roll and pitch [rad]".to_owned(), rank: Rank::More, channels: names },
+            Group { title: "Roll, pitch [rad]".to_owned(), rank: Rank::More, channels: names },
         );
     }
     for ((towed, what), channels) in wheels {
@@ -243,7 +243,7 @@ mod tests {
         let expected = [
             ("Speed [m/s]", Rank::Main),
             ("Force [N]", Rank::Main),
-            ("Roll and pitch [rad]", Rank::More),
+            ("Roll, pitch [rad]", Rank::More),
             ("Power [W]", Rank::More),
             ("Length [m]", Rank::More),
             ("Angle [rad]", Rank::More),

@@ -1,12 +1,13 @@
 //! Views, containers and panels, as the viewer takes them.
 
 use crate::ViewError;
+use crate::axis::{Span, last_s};
 use crate::entity;
 use crate::recorder::{Recorder, TIMELINE, encode, nanoseconds};
 use rerun::datatypes::{TimeInt, TimeRange, TimeRangeBoundary};
 use rerun::external::re_log_types::{BlueprintActivationCommand, StoreKind};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
-    ContainerBlueprint, PanelBlueprint, PlotLegend, TimeAxis, TimePanelBlueprint, ViewBlueprint,
+    ContainerBlueprint, PanelBlueprint, PlotLegend, ScalarAxis, TimeAxis, TimePanelBlueprint, ViewBlueprint,
     ViewContents, ViewportBlueprint,
 };
 use rerun::external::re_sdk_types::blueprint::components::{
@@ -19,6 +20,23 @@ use rerun::{ApplicationId, AsComponents, EntityPath, RecordingStreamBuilder};
 pub(crate) const LEGEND: f64 = 0.3;
 /// The same of a plot of half the width.
 pub(crate) const WIDE_LEGEND: f64 = 0.5;
+
+/// Height of what the plots of a window of 900 points share, and what each of them needs for its title and its times [points].
+pub(crate) const COLUMN: f64 = 840.0;
+const FRAME: f64 = 46.0;
+
+/// How a plot is to look.
+#[derive(Clone, Copy)]
+pub(crate) struct Look {
+    /// First and last time of its lines [s].
+    pub times_s: [f64; 2],
+    /// Room of the legend beyond them, as a share; without room there is none.
+    pub room: f64,
+    /// From where to where its lines go.
+    pub span: Option<Span>,
+    /// How high it is, with its title and its times [points].
+    pub height: f64,
+}
 
 /// A view or a container.
 #[derive(Clone)]
@@ -115,19 +133,23 @@ impl Layout {
         Ok(node)
     }
 
-    /// Lines over the time from first to last [s] and a share beyond, the room of their legend; without room they have none.
+    /// Lines over time.
     pub(crate) fn plot(
         &mut self,
         title: &str,
         lines: &[EntityPath],
-        [first, last]: [f64; 2],
-        room: f64,
+        Look { times_s: [first, last], room, span, height }: Look,
     ) -> Result<Node, ViewError> {
         let legend = PlotLegend::new().with_corner(Corner2D::RightTop).with_visible(room > 0.0);
-        let [from, to] = [first, last + room * (last - first)]
+        let [from, to] = [first, last_s(first, last + room * (last - first))]
             .map(|time_s| TimeRangeBoundary::Absolute(TimeInt(nanoseconds(time_s))));
         let axis = TimeAxis::new().with_view_range(TimeRange { start: from, end: to });
-        self.view("TimeSeries", title, lines, &[("PlotLegend", &legend), ("TimeAxis", &axis)])
+        let mut properties: Vec<(&str, &dyn AsComponents)> =
+            vec![("PlotLegend", &legend), ("TimeAxis", &axis)];
+        let range = span.and_then(|span| span.axis(height - FRAME));
+        let values = range.map(|ends| ScalarAxis::new().with_range(rerun::datatypes::Range1D(ends)));
+        properties.extend(values.as_ref().map(|values| ("ScalarAxis", values as &dyn AsComponents)));
+        self.view("TimeSeries", title, lines, &properties)
     }
 
     /// What lies around the views.

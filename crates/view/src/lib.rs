@@ -5,6 +5,7 @@
 //! vehicles are drawn, the recorded one transparent, and both lines stand in the same plot. [`write_diagnosis`] makes the file of a
 //! diagnosis: where a model and a recording part, and what was found there.
 
+mod axis;
 mod balance;
 mod blueprint;
 mod colour;

@@ -1,5 +1,6 @@
 //! Channels as lines over time.
 
+use crate::axis::Span;
 use crate::colour::{Colour, RESIDUAL, pale};
 use crate::entity::{self, Who};
 use crate::groups::{self, Group};
@@ -108,6 +109,7 @@ pub(crate) fn line(
         .with_colors([Color::from_rgb(red, green, blue)])
         .with_widths([width]);
     to.fixed(at, &look)?;
+    to.note(at, Span::of(values));
     let columns = Scalars::update_fields().with_scalars(thinned.values).columns(thinned.lengths);
     to.rows(at, thinned.times_s, columns)
 }

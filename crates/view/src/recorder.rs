@@ -1,6 +1,7 @@
 //! Messages as Rerun stores them, collected in memory.
 
 use crate::ViewError;
+use crate::axis::Span;
 use rerun::log::{Chunk, LogMsg, RowId};
 use rerun::sink::MemorySinkStorage;
 use rerun::time::{TimePoint, Timeline};
@@ -8,6 +9,7 @@ use rerun::{
     AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, SerializationResult,
     SerializedComponentColumn, TimeColumn,
 };
+use std::cell::RefCell;
 
 /// The one timeline [s].
 pub(crate) const TIMELINE: &str = "time";
@@ -16,6 +18,7 @@ pub(crate) const TIMELINE: &str = "time";
 pub(crate) struct Recorder {
     stream: RecordingStream,
     storage: MemorySinkStorage,
+    spans: RefCell<Vec<(EntityPath, Span)>>,
 }
 
 pub(crate) fn encode(error: impl std::fmt::Display) -> ViewError {
@@ -30,7 +33,7 @@ pub(crate) fn nanoseconds(time_s: f64) -> i64 {
 impl Recorder {
     pub(crate) fn new(builder: RecordingStreamBuilder) -> Result<Self, ViewError> {
         let (stream, storage) = builder.enabled(true).memory().map_err(encode)?;
-        Ok(Self { stream, storage })
+        Ok(Self { stream, storage, spans: RefCell::default() })
     }
 
     /// The stream that everything goes through.
@@ -65,6 +68,18 @@ impl Recorder {
     {
         let times = TimeColumn::new_duration_secs(TIMELINE, times_s);
         self.stream.send_columns(at.clone(), [times], columns.map_err(encode)?).map_err(encode)
+    }
+
+    /// Notes from where to where the values of a line go.
+    pub(crate) fn note(&self, at: &EntityPath, span: Option<Span>) {
+        self.spans.borrow_mut().extend(span.map(|span| (at.clone(), span)));
+    }
+
+    /// From where to where all lines below these entities go.
+    pub(crate) fn span(&self, below: &[EntityPath]) -> Option<Span> {
+        let spans = self.spans.borrow();
+        let drawn = spans.iter().filter(|(at, _)| below.iter().any(|above| at.starts_with(above)));
+        drawn.map(|(_, span)| *span).reduce(Span::with)
     }
 
     pub(crate) fn finish(self) -> Vec<LogMsg> {

@@ -40,7 +40,7 @@ fn messages(diagnosis: &Diagnosis) -> Result<Vec<LogMsg>, ViewError> {
     for (name, text) in [("answer", answer.as_str()), ("alternatives", diagnosis.alternatives)] {
         to.fixed(&entity::words(name), &TextDocument::from_markdown(text))?;
     }
-    let mut messages = layout::messages(&application, diagnosis, plan.as_ref())?;
+    let mut messages = layout::messages((&application, &to), diagnosis, plan.as_ref())?;
     messages.extend(to.finish());
     Ok(messages)
 }

@@ -5,7 +5,8 @@ use super::plan::Plan;
 use super::{Diagnosis, Shown, Stage, lines};
 use crate::ViewError;
 use crate::entity;
-use crate::layout::{LEGEND, Layout, Node, WIDE_LEGEND};
+use crate::layout::{COLUMN, LEGEND, Layout, Look, Node, WIDE_LEGEND};
+use crate::recorder::Recorder;
 use rerun::external::re_sdk_types::blueprint::archetypes::{Background, VisualBounds2D};
 use rerun::external::re_sdk_types::blueprint::components::{BackgroundKind, ContainerKind};
 use rerun::log::LogMsg;
@@ -15,10 +16,12 @@ use rerun::{ApplicationId, AsComponents, EntityPath};
 const DARK: [u8; 3] = [22, 26, 32];
 /// Runs whose signal is seen at once; the others have it in their tabs.
 const AT_ONCE: usize = 3;
+/// Share of the height that their tabs have below them.
+const BELOW: f32 = 3.0;
 
 /// The messages that make the layout.
 pub(crate) fn messages(
-    application: &ApplicationId,
+    (application, drawn): (&ApplicationId, &Recorder),
     diagnosis: &Diagnosis,
     plan: Option<&Plan>,
 ) -> Result<Vec<LogMsg>, ViewError> {
@@ -40,7 +43,7 @@ pub(crate) fn messages(
     let root = if diagnosis.shown.is_empty() {
         left
     } else {
-        let right = proof(&mut layout, diagnosis)?;
+        let right = proof((&mut layout, drawn), diagnosis)?;
         layout.split(ContainerKind::Horizontal, "", &[left, right], &[6.0, 5.0])?
     };
     layout.finish(&root)
@@ -88,43 +91,56 @@ fn maps(layout: &mut Layout, diagnosis: &Diagnosis) -> Result<Node, ViewError> {
 }
 
 /// The signal in the first runs, and below it the rest of each run in a tab.
-fn proof(layout: &mut Layout, diagnosis: &Diagnosis) -> Result<Node, ViewError> {
+fn proof((layout, drawn): (&mut Layout, &Recorder), diagnosis: &Diagnosis) -> Result<Node, ViewError> {
+    let at_once = diagnosis.shown.len().min(AT_ONCE);
+    let above_share = (2.0 * at_once as f32).clamp(2.0, 4.5);
+    let above = COLUMN * f64::from(above_share / (above_share + BELOW));
+    let height = above / at_once as f64;
     let mut signals = Vec::new();
     let mut tabs = Vec::new();
     for (index, shown) in diagnosis.shown.iter().enumerate() {
         let times_s = times_s(shown);
-        let (mut parts, mut shares) = (Vec::new(), Vec::new());
-        let mut plot = |layout: &mut Layout, title: &str, at: EntityPath| -> Result<(), ViewError> {
-            parts.push(layout.plot(title, &[at], times_s, LEGEND)?);
-            shares.push(1.0);
-            Ok(())
+        let look = |at: &EntityPath, room: f64, height: f64| Look {
+            times_s,
+            room,
+            span: drawn.span(std::slice::from_ref(at)),
+            height,
+        };
+        let mut parts = Vec::new();
+        let mut plot = |title: &str, at: EntityPath| {
+            parts.push((title.to_owned(), at));
         };
         let signal = format!("{}: {}", named(shown), shown.signal);
         let error = format!("{}: measured − modelled", shown.run);
         if index < AT_ONCE {
-            let views = [
-                layout.plot(&signal, &[lines::signal(shown)], times_s, WIDE_LEGEND)?,
-                layout.plot(&error, &[lines::error(shown)], times_s, 0.0)?,
-            ];
+            let views = [(signal, lines::signal(shown), WIDE_LEGEND), (error, lines::error(shown), 0.0)].map(
+                |(title, at, room)| layout.plot(&title, std::slice::from_ref(&at), look(&at, room, height)),
+            );
+            let views = views.into_iter().collect::<Result<Vec<_>, _>>()?;
             signals.push(layout.split(ContainerKind::Horizontal, "", &views, &[1.0, 1.0])?);
         } else {
-            plot(layout, &signal, lines::signal(shown))?;
-            plot(layout, &error, lines::error(shown))?;
+            plot(&signal, lines::signal(shown));
+            plot(&error, lines::error(shown));
         }
         if diagnosis.left.iter().any(|left| left.run.id == shown.run) {
             let title =
                 format!("{}: left over in the {} balance [{}]", shown.run, diagnosis.balance, diagnosis.unit);
-            plot(layout, &title, lines::left_over(shown))?;
+            plot(&title, lines::left_over(shown));
         }
         for (number, effect) in shown.effects.iter().enumerate() {
             let title = format!("{}: {} [{}]", shown.run, effect.name, effect.unit);
-            plot(layout, &title, lines::effect(shown, number))?;
+            plot(&title, lines::effect(shown, number));
         }
         if !parts.is_empty() {
-            tabs.push(layout.split(ContainerKind::Vertical, shown.run, &parts, &shares)?);
+            let height = (COLUMN - above) / parts.len() as f64;
+            let plots = parts
+                .iter()
+                .map(|(title, at)| layout.plot(title, std::slice::from_ref(at), look(at, LEGEND, height)))
+                .collect::<Result<Vec<_>, _>>()?;
+            let shares = vec![1.0; plots.len()];
+            tabs.push(layout.split(ContainerKind::Vertical, shown.run, &plots, &shares)?);
         }
     }
-    let share = (2.0 * signals.len() as f32).min(4.5);
     let above =
         layout.split(ContainerKind::Vertical, "Before and after", &signals, &vec![1.0; signals.len()])?;
     let below = match tabs.as_slice() {
@@ -132,7 +148,7 @@ fn proof(layout: &mut Layout, diagnosis: &Diagnosis) -> Result<Node, ViewError> 
         [only] => only.clone(),
         _ => layout.split(ContainerKind::Tabs, "Runs", &tabs, &[])?,
     };
-    layout.split(ContainerKind::Vertical, "", &[above, below], &[share.max(2.0), 3.0])
+    layout.split(ContainerKind::Vertical, "", &[above, below], &[above_share, BELOW])
 }
 
 fn named(shown: &Shown) -> String {

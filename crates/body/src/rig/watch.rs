@@ -27,6 +27,10 @@ impl Rig<'_> {
                 wheel.told
             ));
         }
+        if let Some(wheel) = self.wheels.iter().find(|wheel| !wheel.felt.resistance_n.is_finite()) {
+            let resistance_n = wheel.felt.resistance_n;
+            return Some(format!("{} is resisted by {resistance_n} N, expected a finite force", wheel.told));
+        }
         let state = &self.state;
         if !(state.velocity.is_finite() && state.turning.is_finite() && state.centre.is_finite()) {
             return Some("the motion is no finite number: a shorter step may help".to_owned());

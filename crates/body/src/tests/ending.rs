@@ -77,6 +77,31 @@ fn a_wheel_that_sinks_to_its_hub_ends_the_run_and_is_named() {
     assert!((ruts[ruts.len() - 10] - 0.0355).abs() < 2e-3, "{}", ruts[ruts.len() - 10]);
 }
 
+/// Ground that has no number for its resistance behind 5 m, as a plugin of the user's own may have none.
+#[derive(Debug)]
+struct Unsaid(f64);
+
+impl Soil for Unsaid {
+    fn resistance_n(&self, contact: &Contact) -> f64 {
+        if contact.position_m > 5.0 { self.0 } else { 0.05 * contact.load_n }
+    }
+}
+
+/// It was taken for none: the vehicle rolled on as if nothing resisted it, and the run was said to be finished.
+#[test]
+fn a_resistance_that_is_no_number_ends_the_run_with_its_place_and_what_was_before() {
+    for broken in [f64::NAN, f64::INFINITY] {
+        let model = model(terrain::<Flat>("()"), Box::new(Unsaid(broken)));
+        let outcome = run(&model, &cycle(4.0, coast_down(), 2e-3));
+        let End::Stopped { reason, position_m, .. } = &outcome.end else {
+            panic!("{broken}: {:?}", outcome.end)
+        };
+        assert!(reason.contains("expected a finite force"), "{reason}");
+        assert!((3.3..3.5).contains(position_m), "{position_m}");
+        assert!(super::channel(&outcome, "speed_m_s").iter().all(|speed| speed.is_finite()));
+    }
+}
+
 /// A driveline that takes back what it is asked to, at any speed.
 #[derive(Debug)]
 struct TakesBack;

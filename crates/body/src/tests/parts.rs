@@ -51,6 +51,33 @@ fn an_open_differential_gives_equal_torques_and_a_locked_one_equal_speeds() {
     assert!(locked.wheels_m_s.iter().all(|speed| (speed - (2.0 - 0.025)).abs() < 1e-12));
 }
 
+/// A track as a row of wheels: locked to one another they turn at one speed, whatever the ground does to each; open they do not.
+#[test]
+fn a_locked_row_of_wheels_turns_at_one_speed() {
+    const AXLES: u32 = 5;
+    let row = |differential: Differential| {
+        let list = (0..AXLES).map(|index| axle(1.6 - 0.8 * f64::from(index)));
+        let axles = Axles::new(list.collect(), 1.3, 0.7, 0.5).unwrap();
+        let mut chassis = chassis();
+        chassis.centre = differential;
+        chassis.axles = vec![chassis.axles[0]; AXLES as usize];
+        chassis.axles.iter_mut().for_each(|axle| axle.differential = differential);
+        let wheels: Vec<(usize, f64)> = (0..AXLES as usize).flat_map(|axle| [(axle, 1.0); 2]).collect();
+        let mut spin = Spin::new(&axles, &chassis, &wheels, 1_000.0, 2.0);
+        for _ in 0..50 {
+            // The wheels behind find more hold than those before them.
+            spin.advance((10e3, 1.0), 0.0, |wheel| 300.0 * wheel as f64, 0.01);
+        }
+        spin.wheels_m_s
+    };
+    let locked = row(Differential::Locked);
+    // 10 kN less 300 N (0 + 1 + … + 9) against 1 t, for half a second.
+    assert!((locked[0] - (2.0 + 0.5 * (10e3 - 13.5e3) / 1e3)).abs() < 1e-9, "{locked:?}");
+    assert!(locked.iter().all(|speed| (speed - locked[0]).abs() < 1e-12), "{locked:?}");
+    let open = row(Differential::Open);
+    assert!(open.windows(2).any(|pair| (pair[0] - pair[1]).abs() > 0.1), "{open:?}");
+}
+
 #[test]
 fn axles_turn_by_their_leads_and_work_is_what_energy_changes_by() {
     let mut led = spin(Differential::Locked, Differential::Locked, Some(1.05));

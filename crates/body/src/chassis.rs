@@ -77,8 +77,10 @@ pub struct Steering {
 pub struct AxleBody {
     /// Damping of each tyre [N s/m].
     pub damping_n_s_m: f64,
-    /// The most that a tyre holds in the plane of the ground, per load.
+    /// The most that a tyre holds along the wheel, per load.
     pub friction: f64,
+    /// The most that it holds across the wheel, per load; together they are the half axes of an ellipse.
+    pub side_friction: f64,
     /// Force along the wheel per load and slip, on ground that knows no slip.
     pub slip_stiffness: f64,
     /// Force across the wheel per load and slip angle [1/rad].

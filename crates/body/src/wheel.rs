@@ -4,15 +4,16 @@
 //! σ dζ/dt = (w − u) − max(|u|, |w|) ζ                   slip that a tyre has, which follows with its relaxation length σ
 //! σ dη/dt = −v − hypot(u, v) η                          the same across it; at rest both are springs
 //! G = soil(ζ, N), or μ N tanh(c_ζ ζ / μ)                along the wheel; the second where the ground knows no slip
-//! S = μ N tanh(c_α η / μ)                               across it
-//! (G, S) → (G, S) / max(1, hypot(G, S) / (μ N))         no more than the friction circle holds
+//! S = μ_s N tanh(c_α η / μ_s)                           across it
+//! (G, S) → (G, S) / max(1, hypot(G / μ, S / μ_s) / N)   no more than the friction ellipse (G / μ)² + (S / μ_s)² = N² holds
 //!
-//! ζ ← min(|ζ|, 3 μ / c_ζ) sign ζ, η likewise, where (w − u) ζ < 0         a tyre that slides is wound no further than it grips
+//! ζ ← min(|ζ|, 3 μ / c_ζ) sign ζ, η likewise with μ_s, where (w − u) ζ < 0   a tyre that slides is wound no further than it grips
 //!
 //! u and v are the velocity of the vehicle at the ground, along and across the wheel, w the speed at which it rolls.
 //! Sources: Pacejka, *Tire and Vehicle Dynamics* (2012), chapter 7 (single contact point with relaxation), chapter 8 (the bound
-//! of the deflection about a rest) and chapter 4 (similarity, the bound of combined forces); the soil's own for G. Tread and carcass damp slip with the time constant c / k
-//! of the tyre. The ground is its mean over the footprint. Leaves out camber, and the moment that turns a wheel back.
+//! of the deflection about a rest) and chapter 4 (similarity, the bound of combined forces); Wong, *Theory of Ground Vehicles* (2008),
+//! section 1.4 (the friction ellipse); the soil's own for G. Tread and carcass damp slip with the time constant c / k of the
+//! tyre. The ground is its mean over the footprint. Leaves out camber, and the moment that turns a wheel back.
 
 use crate::chassis::{AxleBody, Suspension};
 use crate::hop::Unsprung;
@@ -210,14 +211,15 @@ impl Wheel<'_> {
     /// Feels the ground at the speed at which it rolls, and lets its slips follow for a step.
     pub fn feel(&mut self, scene: &Scene, rolling_m_s: f64, step_s: f64) {
         let Touch { load_n, along_m_s: u, across_m_s: v, point, .. } = self.touch;
-        let AxleBody { friction: mu, relaxation_length_m: sigma, slip_stiffness, .. } = self.body;
+        let AxleBody { friction: mu, side_friction, relaxation_length_m: sigma, slip_stiffness, .. } =
+            self.body;
         let w = rolling_m_s;
-        let unwound = |slip: f64, sliding: f64, stiffness: f64| {
+        let unwound = |slip: f64, sliding: f64, (mu, stiffness): (f64, f64)| {
             let most = WOUND * mu / stiffness;
             if sliding * slip < 0.0 { slip.clamp(-most, most) } else { slip }
         };
-        self.slip = unwound(self.slip, w - u, slip_stiffness);
-        self.side = unwound(self.side, -v, self.body.cornering_stiffness_per_rad);
+        self.slip = unwound(self.slip, w - u, (mu, slip_stiffness));
+        self.side = unwound(self.side, -v, (side_friction, self.body.cornering_stiffness_per_rad));
         let follow = |slip: f64, sliding: f64, passing: f64| {
             (slip + step_s * sliding / sigma) / (1.0 + step_s * passing / sigma)
         };
@@ -255,8 +257,10 @@ impl Wheel<'_> {
             let gross_n = hold_n * (slip_stiffness * felt_slip / mu).tanh();
             (gross_n, whole_n * load_n / scene.load_n, f64::NAN)
         };
-        let side_n = hold_n * (self.body.cornering_stiffness_per_rad * felt_side / mu).tanh();
-        let beyond = (gross_n.hypot(side_n) / hold_n).max(1.0);
+        let cornering = self.body.cornering_stiffness_per_rad;
+        let side_n = side_friction * load_n * (cornering * felt_side / side_friction).tanh();
+        // The ellipse drawn out to a circle; where both are the same that changes no bit.
+        let beyond = (gross_n.hypot(side_n * (mu / side_friction)) / hold_n).max(1.0);
         let pace_m_s = u.abs().max(SLOWEST_M_S);
         let deeper_m = if rut_m.is_nan() { 0.0 } else { rut_m - self.sinkage_m };
         self.sinking_m_s = deeper_m * pace_m_s / (sigma + step_s * pace_m_s);

@@ -64,6 +64,7 @@ pub enum DifferentialFile {
 pub struct AxleBodyFile {
     pub damping_n_s_m: f64,
     pub friction: f64,
+    pub side_friction: Option<f64>,
     pub slip_stiffness: f64,
     pub cornering_stiffness_per_rad: f64,
     pub relaxation_length_m: f64,
@@ -150,9 +151,10 @@ pub const BOUNDS: [(&str, Bound); 9] = [
 ];
 
 /// Bounds of those of each of its axles.
-pub const AXLE_BOUNDS: [(&str, Bound); 8] = [
+pub const AXLE_BOUNDS: [(&str, Bound); 9] = [
     ("damping_n_s_m", Bound::NotNegative),
     ("friction", Bound::Within(0.01, 3.0)),
+    ("side_friction", Bound::Within(0.01, 3.0)),
     ("slip_stiffness", Bound::Positive),
     ("cornering_stiffness_per_rad", Bound::Positive),
     ("relaxation_length_m", Bound::Within(0.01, 10.0)),
@@ -226,6 +228,7 @@ fn chassis(document: &Document, vehicle: &VehicleFile) -> Result<Option<Chassis>
             .map(|axle| AxleBody {
                 damping_n_s_m: axle.damping_n_s_m,
                 friction: axle.friction,
+                side_friction: axle.side_friction.unwrap_or(axle.friction),
                 slip_stiffness: axle.slip_stiffness,
                 cornering_stiffness_per_rad: axle.cornering_stiffness_per_rad,
                 relaxation_length_m: axle.relaxation_length_m,

@@ -114,6 +114,8 @@ fn what_cannot_be_is_refused_where_it_stands() {
     assert!(fast.contains("a wheel rolls past its footprint") && fast.contains("test.ron:29"), "{fast}");
     let friction = told("friction: 0.8", "friction: -0.8");
     assert!(friction.contains("`friction` is -0.8, expected 0.01 to 3"), "{friction}");
+    let aside = told("friction: 0.8", "friction: 0.8, side_friction: 0");
+    assert!(aside.contains("`side_friction` is 0, expected 0.01 to 3"), "{aside}");
     let weightless = told("mass_kg: 13000, rotating_mass_kg: 900", "mass_kg: 13000, rotating_mass_kg: 0");
     assert!(weightless.contains("`rotating_mass_kg` is 0, expected more than 0"), "{weightless}");
     let mass = told("mass_kg: 13000", "mass_kg: 0");

@@ -26,6 +26,7 @@ pub struct TrailerAxleFile {
     pub tyre: TyreFile,
     pub damping_n_s_m: f64,
     pub friction: f64,
+    pub side_friction: Option<f64>,
     pub slip_stiffness: f64,
     pub cornering_stiffness_per_rad: f64,
     pub relaxation_length_m: f64,
@@ -55,6 +56,7 @@ pub fn trailer(file: &TrailerFile) -> Trailer {
         body: AxleBody {
             damping_n_s_m: axle.damping_n_s_m,
             friction: axle.friction,
+            side_friction: axle.side_friction.unwrap_or(axle.friction),
             slip_stiffness: axle.slip_stiffness,
             cornering_stiffness_per_rad: axle.cornering_stiffness_per_rad,
             relaxation_length_m: axle.relaxation_length_m,

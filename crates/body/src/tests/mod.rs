@@ -41,6 +41,7 @@ pub fn chassis() -> Chassis {
     let axle = AxleBody {
         damping_n_s_m: 6e3,
         friction: 0.8,
+        side_friction: 0.8,
         slip_stiffness: 12.0,
         cornering_stiffness_per_rad: 6.0,
         relaxation_length_m: 0.7,

@@ -1,4 +1,4 @@
-//! Parts by themselves: what is carried, shafts, the friction circle.
+//! Parts by themselves: what is carried, shafts, the friction ellipse.
 
 use super::{TYRE, axle, chassis, soil};
 use crate::chassis::{Differential, Payload};
@@ -172,4 +172,45 @@ fn forces_are_stiffness_times_little_slip_and_stay_in_the_friction_circle() {
         both.gross_n < 0.75 * felt(0.3, 0.0).gross_n,
         "driving takes from the side, and the side from driving"
     );
+}
+
+/// Along 0.8 of the load, across half of that: each alone reaches its own, both together the ellipse between them, and with the same
+/// on both it is the circle.
+#[test]
+fn a_tyre_that_holds_less_across_stays_in_an_ellipse() {
+    let soil = soil::<Constant>("(coefficient: 0.07)");
+    let scene = Scene {
+        soil: &*soil,
+        place: Place::default(),
+        position_m: 0.0,
+        speed_m_s: 2.0,
+        load_n: 120e3,
+        slip_limit: 0.5,
+    };
+    let felt = |slip: f64, side: f64, across: f64| {
+        let mut wheel = wheel(slip, side);
+        wheel.body.side_friction = across;
+        wheel.feel(&scene, 0.0, 0.0);
+        [wheel.felt.gross_n / 30e3, wheel.felt.side_n / 30e3]
+    };
+    let (along, across) = (0.8, 0.4);
+    let [gross, side] = felt(0.8, 0.0, across);
+    assert!((gross / along - 1.0).abs() < 1e-4 && side == 0.0, "{gross}");
+    let [gross, side] = felt(0.0, -0.8, across);
+    assert!((side / -across - 1.0).abs() < 1e-4 && gross == 0.0, "{side}");
+    // Little slip is felt by the stiffness alone, whatever the most is.
+    assert!((felt(0.0, 1e-4, across)[1] / 6e-4 - 1.0).abs() < 1e-5);
+    for (slip, aside) in [(0.8, 0.8), (-0.8, 0.8), (0.4, -0.1), (0.1, 0.4), (0.04, 0.02)] {
+        let [gross, side] = felt(slip, aside, across);
+        let of_all = (gross / along).hypot(side / across);
+        assert!(of_all <= 1.0 + 1e-12, "{slip} {aside}: {of_all}");
+        let alone = [felt(slip, 0.0, across)[0] / along, felt(0.0, aside, across)[1] / across];
+        let asked = alone[0].hypot(alone[1]);
+        assert!((of_all - asked.min(1.0)).abs() < 1e-12, "{slip} {aside}: {of_all} of {asked}");
+        assert!((gross * alone[1] * across - side * alone[0] * along).abs() < 1e-12, "both are cut alike");
+        let [gross, side] = felt(slip, aside, along);
+        assert!(gross.hypot(side) <= along * (1.0 + 1e-12));
+    }
+    let [gross, side] = felt(0.8, 0.8, along);
+    assert!((gross.hypot(side) - along).abs() < 1e-12 && (gross - side).abs() < 1e-2, "{gross} {side}");
 }

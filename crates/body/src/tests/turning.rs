@@ -98,6 +98,7 @@ fn gripping() -> Chassis {
     let mut chassis = chassis();
     for axle in &mut chassis.axles {
         axle.friction = 1.5;
+        axle.side_friction = 1.5;
     }
     chassis
 }

@@ -3,7 +3,7 @@
 /// Numbers one above another need so much room [points]; the viewer drops those that have less than 20.
 const NUMBER: f64 = 22.0;
 /// As many numbers tell what a scale is.
-const NUMBERS: usize = 3;
+const NUMBERS: f64 = 3.0;
 /// Left free at both ends, as a share of what is spanned: a number at the very end would be cut.
 const MARGIN: f64 = 0.06;
 /// Steps of times [s].
@@ -36,12 +36,12 @@ impl Span {
         if width <= 1e-9 * self.low.abs().max(self.high.abs()) || !width.is_normal() {
             return None;
         }
-        let most = (height / NUMBER).max(NUMBERS as f64) * (1.0 - 2.0 * MARGIN);
-        let step = 10f64.powi((width / most).log10().ceil() as i32);
+        let most = (height / NUMBER).max(NUMBERS) * (1.0 - 2.0 * MARGIN);
+        let step = 10f64.powf((width / most).log10().ceil());
         // In steps, so that multiples of one are whole numbers.
         let [mut low, mut high] = [self.low / step, self.high / step];
-        let inside = |low: f64, high: f64| (high.floor() - low.ceil()) as isize + 1;
-        while inside(low, high) < NUMBERS as isize {
+        let inside = |low: f64, high: f64| high.floor() - low.ceil() + 1.0;
+        while inside(low, high) < NUMBERS {
             let [below, above] = [(low - 1e-9).floor(), (high + 1e-9).ceil()];
             // Values that are never less than nothing get no numbers below it.
             let down = low - below < above - high && !(self.low >= 0.0 && below < 0.0);

@@ -102,7 +102,7 @@ fn steps_are_a_fault_where_they_hide_the_noise_that_is_known() {
     assert!(!named(&silent, "quantisation"), "{}", silent.diagnosis.answer);
     let known = Sensor { noise: Some(0.2 * STEP_N), ..Sensor::default() };
     for run in &mut recording.runs {
-        run.sensors.push(("tractive_force_n".to_owned(), known.clone()));
+        run.sensors.push(("tractive_force_n".to_owned(), known));
     }
     let told = found(&recording, &Options::default()).unwrap();
     assert!(named(&told, "quantisation"), "{}", told.diagnosis.answer);

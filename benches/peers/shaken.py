@@ -31,18 +31,20 @@ PULL = ('    tasks: {"pull": Drawbar(force_n: "10 kN")},\n', "")
 GIVEN = ("inputs: []", "inputs: [Grade, DrawbarForce]")
 HEAD = """# Shaking and unlike loads, which one dimension does not know
 
-Runs of the rigid body, with noise on the speed (0.02 m/s), the speed of the wheels (0.01 m/s) and the tractive force (100 N), are given
-to `headland diagnose` by `benches/peers/shaken.py`. Answers are the program's own words; the tables are what the rigid body lost and
-carried. Read beside each other, as they stood when this was written:
+Runs of the rigid body, with noise on the speed (0.02 m/s), the speed of the wheels (0.01 m/s) and the tractive force (100
+N), are given to `headland diagnose` by `benches/peers/shaken.py`. Answers are the program's own words; the tables are what
+the rigid body lost and carried. Read beside each other, as they stood when this was written:
 
-- **Roughness** has no name in the library. Where the slope is logged as the vehicle drives it, the diagnosis finds the loss in the two fastest of four
-  runs, as large as it is within its interval, but gives a formula for it that is not its law, and a part of the mismatch only; the held-out run is foretold better,
-  not to the noise. Where the ground is taken for level, or its heights are taken point by point from the map (which tyres smooth),
-  the swing of the slope hides the loss: nothing is named, although the held-out run is far off.
-- **Load that moves between the axles** under a pull and in a climb is known to one dimension: with it the held-out run is foretold to about the noise,
-  and nothing is named. A model without it foretells that run several times worse, and the diagnosis does not name what is missing.
-- **A side slope** (load from left to right, tyres that slip aside) is seen in the right runs, and named wrongly, as rolling resistance that differs
-  from run to run; the answer says itself that this makes the held-out run worse and is no proof.
+- **Roughness** has no name in the library. Where the slope is logged as the vehicle drives it, the diagnosis finds the loss
+  in the two fastest of four runs, as large as it is within its interval, but gives a formula for it that is not its law, and
+  a part of the mismatch only; the held-out run is foretold better, not to the noise. Where the ground is taken for level, or
+  its heights are taken point by point from the map (which tyres smooth), the swing of the slope hides the loss: nothing is
+  named, although the held-out run is far off.
+- **Load that moves between the axles** under a pull and in a climb is known to one dimension: with it the held-out run is
+  foretold to about the noise, and nothing is named. A model without it foretells that run several times worse, and the
+  diagnosis does not name what is missing.
+- **A side slope** (load from left to right, tyres that slip aside) is seen in the right runs, and named wrongly, as rolling
+  resistance that differs from run to run; the answer says itself that this makes the held-out run worse and is no proof.
 
 """
 # Title, folder, scenario, how the runs begin, channels of the recording, and what is changed in the scenario that is diagnosed.
@@ -156,8 +158,7 @@ def main():
             told.append(f"### {title}\n\n> {found['verdict']}: {found['answer']}\n")
             print(told[-1])
     if chosen.markdown:
-        head = HEAD
-        chosen.markdown.write_text(head + "\n".join(told))
+        chosen.markdown.write_text(HEAD + "\n".join(told))
 
 
 if __name__ == "__main__":

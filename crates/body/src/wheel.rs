@@ -11,9 +11,9 @@
 //!
 //! u and v are the velocity of the vehicle at the ground, along and across the wheel, w the speed at which it rolls.
 //! Sources: Pacejka, *Tire and Vehicle Dynamics* (2012), chapter 7 (single contact point with relaxation), chapter 8 (the bound
-//! of the deflection about a rest) and chapter 4 (similarity, the bound of combined forces); Wong, *Theory of Ground Vehicles* (2008),
-//! section 1.4 (the friction ellipse); the soil's own for G. Tread and carcass damp slip with the time constant c / k of the
-//! tyre. The ground is its mean over the footprint. Leaves out camber, and the moment that turns a wheel back.
+//! of the deflection about a rest) and chapter 4 (similarity, the bound of combined forces); Wong, *Theory of Ground Vehicles*
+//! (2008), section 1.4 (the friction ellipse); the soil's own for G. Tread and carcass damp slip with the time constant c / k of
+//! the tyre. The ground is its mean over the footprint. Leaves out camber, and the moment that turns a wheel back.
 
 use crate::chassis::{AxleBody, Suspension};
 use crate::hop::Unsprung;

@@ -336,8 +336,7 @@ fn unsteady(kind: Kind, said: &[Said]) -> Option<f64> {
     if kind != Kind::Motion {
         return None;
     }
-    let masses = said.iter().filter_map(|said| said.effective_mass_kg.iter().find(|mass| mass.is_finite()));
-    let masses: Vec<f64> = masses.copied().collect();
+    let masses: Vec<f64> = said.iter().filter_map(Said::first_mass_kg).collect();
     (!masses.is_empty()).then(|| (USUAL_M_S2 * median(&masses)).powi(2))
 }
 

@@ -281,8 +281,6 @@ impl<'a> Case<'a> {
         }
         let temperatures = self.runs.iter().filter_map(|run| run.measured.trace.get("air_temperature_c"));
         let (coldest, warmest) = range(temperatures.flatten().copied());
-        let masses =
-            self.nominal.iter().filter_map(|said| said.effective_mass_kg.iter().find(|one| one.is_finite()));
         let weight_n = model.vehicle.mass_kg * model.gravity_m_s2;
         let resistances: Vec<f64> = self
             .nominal
@@ -296,14 +294,14 @@ impl<'a> Case<'a> {
             gravity_m_s2: model.gravity_m_s2,
             drag_area_m2: model.vehicle.resistance.drag_area_m2(),
             rotating_mass_kg: model.vehicle.rotating_mass_kg,
-            masses_kg: range(masses.copied()),
+            masses_kg: range(self.nominal.iter().filter_map(Said::first_mass_kg)),
             coefficient: if resistances.is_empty() { 0.0 } else { median(&resistances).max(0.0) },
             soil_coefficient: walking(model),
             speeds_m_s: [0.2, 0.35, 0.5, 0.65, 0.8].map(quantile),
             range_m_s: (quantile(0.05), quantile(0.98)),
             fastest_m_s: quantile(1.0),
             one_ratio: model.driveline.force_of_torque_n(1.0, 1.0).is_some(),
-            duration_s: self.runs.iter().map(|run| run.measured.trace.duration_s()).fold(0.0, f64::max),
+            duration_s: self.longest_s(),
             channels: names
                 .iter()
                 .map(|channel| channel.name.clone())
@@ -315,6 +313,11 @@ impl<'a> Case<'a> {
             beginnings: beginnings(&self.fit, &self.bears),
             pulls: bearing().any(|run| run.force_n.is_some() || run.pull_n.is_some()),
         }
+    }
+
+    /// Length of the longest run [s].
+    pub fn longest_s(&self) -> f64 {
+        self.runs.iter().map(|run| run.measured.trace.duration_s()).fold(0.0, f64::max)
     }
 
     /// Whether force or torque drives somewhere.

@@ -107,7 +107,7 @@ impl Look {
         }
         let small: Vec<&'static str> = corrections
             .iter()
-            .filter(|correction| sensors::is_none(case, correction.id, correction.value))
+            .filter(|correction| sensors::is_no_fault(case, correction.id, correction.value))
             .map(|correction| correction.id)
             .collect();
         if !more && small.is_empty() {

@@ -114,9 +114,7 @@ pub fn prove(
 }
 
 fn by_path(refined: &Refined) -> bool {
-    let own =
-        |cured: &Cured| cured.function().is_some() || !cured.events.is_empty() || cured.cause.run.is_some();
-    refined.causes.iter().any(own)
+    refined.causes.iter().any(|cured| cured.function().is_some() || cured.in_single_runs())
 }
 
 /// The balance whose signal tells before and after: that of what was found first, and else that of motion.

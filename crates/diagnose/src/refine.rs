@@ -37,6 +37,13 @@ pub struct Cured {
     pub mirrored: Option<Vec<f64>>,
 }
 
+impl Cured {
+    /// Whether single runs tell it of themselves: spells, or what works in one run.
+    pub fn in_single_runs(&self) -> bool {
+        !self.events.is_empty() || self.cause.run.is_some()
+    }
+}
+
 /// A free parameter.
 #[derive(Clone, Debug)]
 pub struct Free {

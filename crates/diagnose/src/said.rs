@@ -135,6 +135,11 @@ fn pulled(run: &Recorded, modelled: &Trace) -> Result<Option<Trace>, DiagnoseErr
 }
 
 impl Said {
+    /// The first effective mass of the run, where it has any [kg].
+    pub fn first_mass_kg(&self) -> Option<f64> {
+        self.effective_mass_kg.iter().copied().find(|mass| mass.is_finite())
+    }
+
     /// Power that the state of charge says is drawn, as the battery of a run nominally holds it [W].
     pub fn drawn_w(&self, run: &Recorded) -> Option<Vec<f64>> {
         let (charge, energy_j) = (self.charge.as_ref()?, run.charge_j?);

@@ -8,7 +8,7 @@ use crate::contest::Contest;
 use crate::gram::{Column, Estimate, Reduced};
 use crate::noise::{Noises, Shape};
 use crate::profile::Function;
-use crate::sensors::is_none;
+use crate::sensors::is_no_fault;
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Trial};
 use headland_calibrate::statistics::{Draws, quantile_of_sorted, sorted};
@@ -266,7 +266,7 @@ impl State<'_> {
     fn beyond_the_sensor(&self, stand: &Stand, part: &Part) -> bool {
         let position = part.trial.columns.first().and_then(|column| stand.position(*column));
         let value = position.map_or(0.0, |position| stand.estimate.beta[position]);
-        !is_none(self.case, self.id(&part.trial), value)
+        !is_no_fault(self.case, self.id(&part.trial), value)
     }
 }
 

@@ -34,14 +34,11 @@ pub fn small_latency_s(case: &Case) -> f64 {
     longest_renewal_s(&case.runs, "speed_m_s").max(FILTER_S)
 }
 
-/// Whether a fault of this size is none: one that nobody would mind, or more than any sensor is wrong by.
-pub fn is_none(case: &Case, id: &str, value: f64) -> bool {
+/// Whether what has this size is no fault: less than anybody would mind, or more than any sensor is wrong by.
+pub fn is_no_fault(case: &Case, id: &str, value: f64) -> bool {
     match id {
         "latency" => value.abs() <= small_latency_s(case),
-        "clock_drift" => {
-            let longest_s = case.runs.iter().map(|run| run.measured.trace.duration_s()).fold(0.0, f64::max);
-            value.abs() * longest_s <= small_latency_s(case)
-        }
+        "clock_drift" => value.abs() * case.longest_s() <= small_latency_s(case),
         "speed_scale" | "force_scale" => !(SMALL_SCALE..=MOST_SCALE).contains(&value.abs()),
         _ => false,
     }

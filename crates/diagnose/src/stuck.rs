@@ -22,6 +22,7 @@ const TURNS: f64 = 0.25;
 const NOISY: f64 = 0.02;
 /// and one that is still for more than this share of the samples is renewed that slowly.
 const MOSTLY: f64 = 0.3;
+
 /// Stretches of equal values, first and last sample.
 pub fn still(values: &[f64]) -> Vec<(usize, usize)> {
     let mut all = Vec::new();

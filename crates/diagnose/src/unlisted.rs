@@ -401,8 +401,7 @@ fn with_less(
 
 /// The listed causes that begin and end, at the times at which a law does: a formula finds edges that no grid has.
 fn windows(case: &Case, system: &System, pool: &mut Pool, law: &Law) -> Result<Vec<Part>, DiagnoseError> {
-    let longest_s = case.runs.iter().map(|run| run.measured.trace.duration_s()).fold(0.0, f64::max);
-    let Some(window) = window_s(law, longest_s) else { return Ok(Vec::new()) };
+    let Some(window) = window_s(law, case.longest_s()) else { return Ok(Vec::new()) };
     let before = pool.trials.len();
     for (number, cause) in case.causes.iter().enumerate() {
         if cause.window().is_some() && cause.own.is_none() && cause.possible(&window) {

@@ -5,7 +5,7 @@ use crate::chassis::{Differential, Payload};
 use crate::spin::Spin;
 use crate::wheel::{Felt, Scene, Touch, Wheel};
 use crate::world::properties;
-use headland_plugin::Place;
+use headland_plugin::{Place, Soil};
 use headland_sim::{Axle, Axles};
 use headland_soil::Constant;
 use rapier3d_f64::prelude::Vector;
@@ -141,17 +141,15 @@ fn wheel<'a>(slip: f64, side: f64) -> Wheel<'a> {
     }
 }
 
+/// A vehicle of 120 kN that drives at 2 m/s.
+fn scene(soil: &dyn Soil) -> Scene<'_> {
+    Scene { soil, place: Place::default(), position_m: 0.0, speed_m_s: 2.0, load_n: 120e3, slip_limit: 0.5 }
+}
+
 #[test]
 fn forces_are_stiffness_times_little_slip_and_stay_in_the_friction_circle() {
     let soil = soil::<Constant>("(coefficient: 0.07)");
-    let scene = Scene {
-        soil: &*soil,
-        place: Place::default(),
-        position_m: 0.0,
-        speed_m_s: 2.0,
-        load_n: 120e3,
-        slip_limit: 0.5,
-    };
+    let scene = scene(&*soil);
     let felt = |slip: f64, side: f64| {
         let mut wheel = wheel(slip, side);
         wheel.feel(&scene, 0.0, 0.0);
@@ -174,19 +172,12 @@ fn forces_are_stiffness_times_little_slip_and_stay_in_the_friction_circle() {
     );
 }
 
-/// Along 0.8 of the load, across half of that: each alone reaches its own, both together the ellipse between them, and with the same
-/// on both it is the circle.
+/// Along 0.8 of the load, across half of that: each alone reaches its own, both together the ellipse between them, and with
+/// the same on both it is the circle.
 #[test]
 fn a_tyre_that_holds_less_across_stays_in_an_ellipse() {
     let soil = soil::<Constant>("(coefficient: 0.07)");
-    let scene = Scene {
-        soil: &*soil,
-        place: Place::default(),
-        position_m: 0.0,
-        speed_m_s: 2.0,
-        load_n: 120e3,
-        slip_limit: 0.5,
-    };
+    let scene = scene(&*soil);
     let felt = |slip: f64, side: f64, across: f64| {
         let mut wheel = wheel(slip, side);
         wheel.body.side_friction = across;

@@ -94,8 +94,7 @@ pub fn cause(
 impl Cause {
     /// Places of the begin and of the end of a window among the terms, where it has one.
     pub fn window(&self) -> Option<(usize, usize)> {
-        let place = |name: &str| self.terms.iter().position(|term| term.name == name);
-        Some((place("from_s")?, place("to_s")?))
+        self.places("from_s", "to_s")
     }
 
     /// How many numbers are estimated where it is no function: sizes and shapes, or those of its formula.
@@ -106,8 +105,13 @@ impl Cause {
 
     /// Places of the speed at which a ramp begins and of its width among the terms, where it has one.
     fn ramp(&self) -> Option<(usize, usize)> {
+        self.places("threshold_m_s", "width_m_s")
+    }
+
+    /// Places of two terms by their names, where it has both.
+    fn places(&self, one: &str, other: &str) -> Option<(usize, usize)> {
         let place = |name: &str| self.terms.iter().position(|term| term.name == name);
-        Some((place("threshold_m_s")?, place("width_m_s")?))
+        Some((place(one)?, place(other)?))
     }
 
     /// Whether a shape can be: within its limits, what lasts has to begin before it ends, and a ramp ends before the fastest
@@ -118,15 +122,18 @@ impl Cause {
         if free.any(|(term, value)| !(term.low..=term.high).contains(value)) {
             return false;
         }
-        let place = |term: usize| self.terms[..term].iter().filter(|term| !term.linear).count();
-        let pair = |places: Option<(usize, usize)>| {
-            places.and_then(|(one, other)| Some((*shape.get(place(one))?, *shape.get(place(other))?)))
+        let value = |term: usize| {
+            let place = self.terms[..term].iter().filter(|term| !term.linear).count();
+            shape.get(place).copied()
         };
-        let fastest = |(begin, _): (usize, usize)| self.terms[begin].high;
-        pair(self.window()).is_none_or(|(from, to)| from < to)
-            && pair(self.ramp())
-                .zip(self.ramp())
-                .is_none_or(|((begin, width), ramp)| begin + width <= fastest(ramp))
+        let begins_first = self
+            .window()
+            .is_none_or(|(from, to)| value(from).zip(value(to)).is_none_or(|(from_s, to_s)| from_s < to_s));
+        let ends_in_time = self.ramp().is_none_or(|(begin, width)| {
+            let fastest_m_s = self.terms[begin].high;
+            value(begin).zip(value(width)).is_none_or(|(begin, width)| begin + width <= fastest_m_s)
+        });
+        begins_first && ends_in_time
     }
 
     /// Where a term has to stay so that a window, which has these values, begins before it ends, and a ramp ends in time.

@@ -160,8 +160,7 @@ pub fn inconclusive(
 /// Whether anything that was found is what each run tells of itself alone: a function of time, or spells.
 fn timed(refined: &Refined) -> bool {
     let own = |cured: &Cured| {
-        !cured.events.is_empty()
-            || cured.cause.run.is_some()
+        cured.in_single_runs()
             || cured.function().is_some() && cured.cause.form == Form::OverTime && !cured.cause.by_run
     };
     refined.causes.iter().any(own)

@@ -30,6 +30,7 @@ mod filled;
 mod foreseen;
 mod formula;
 mod gram;
+mod in_doubt;
 mod jumps;
 mod laid;
 mod locate;

@@ -9,6 +9,7 @@ use crate::recorded::Recorded;
 use crate::regeneration::limit_w;
 use crate::said::{Said, said};
 use crate::search::{Accepted, Found};
+use crate::sensors::is_no_fault;
 use crate::trial::{Pool, Trial, for_run};
 use crate::widths::{Widths, widths};
 use crate::{Case, DiagnoseError, Kind, System};
@@ -234,8 +235,9 @@ fn linear(case: &Case, pool: &Pool, found: &Found, widths: &[Widths]) -> Refined
         // Its column is none of a trial, so its number is its place among those in use.
         let value = correction.value + found.estimate.beta[*column];
         let ci95 = interval(*column, value);
-        // What may be none is no fault.
-        if ci95[0] <= 0.0 && ci95[1] >= 0.0 {
+        // What may be none is no fault, nor is what may be no more than anybody would mind.
+        let least = ci95[0].max(-ci95[1]).max(0.0);
+        if least == 0.0 || is_no_fault(case, correction.id, least) {
             continue;
         }
         let values = vec![(value, ci95)];

@@ -2,7 +2,7 @@
 
 use crate::catalogue::Cause;
 use crate::conclude::Side;
-use crate::search::{Accepted, Found, OTHER_WORDS, Rival, TOLERANCE, worth};
+use crate::search::{Accepted, Beside, Found, OTHER_WORDS, Rival, TOLERANCE, worth};
 use crate::state::{Stand, State};
 use crate::trial::Trial;
 use headland_calibrate::statistics::{quantile_of_sorted, sorted};
@@ -41,9 +41,19 @@ impl State<'_> {
                 cause: own.trial.cause,
                 gain: other.stand.score - lesser.score,
                 squared_correlation: correlation,
+                free: self.free_beside(&other.stand),
             });
         }
         rivals
+    }
+
+    /// The free parameters as a set has them.
+    pub fn free_beside(&self, stand: &Stand) -> Vec<Beside> {
+        let of = |place: usize| Beside {
+            change: stand.estimate.beta[place],
+            sd: stand.estimate.covariance[(place, place)].sqrt(),
+        };
+        (0..self.case.study.parameters.len()).map(of).collect()
     }
 
     /// Other sets that are as good: what they hold otherwise stands beside the cause that it is most like.
@@ -87,6 +97,7 @@ impl State<'_> {
                         cause,
                         gain,
                         squared_correlation: correlation,
+                        free: self.free_beside(other),
                     });
                 }
             }

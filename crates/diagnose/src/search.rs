@@ -42,6 +42,17 @@ pub struct Rival {
     pub gain: f64,
     /// Squared correlation with it, free parameters and other causes projected out.
     pub squared_correlation: f64,
+    /// What the free parameters are beside it.
+    pub free: Vec<Beside>,
+}
+
+/// A free parameter as a set of causes has it.
+#[derive(Clone, Copy, Debug)]
+pub struct Beside {
+    /// How far it is from where the scenario has it.
+    pub change: f64,
+    /// Standard deviation.
+    pub sd: f64,
 }
 
 /// One round: the best trials, each with the growth of ln p that it brought.

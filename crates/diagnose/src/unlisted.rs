@@ -184,6 +184,7 @@ fn beside(
             let sound = !state.impossible(&stand.parts, &stand.estimate)
                 && state.works_widely(&stand)
                 && state.sensible(&stand)
+                && !state.draws_twice(&stand)
                 && state.keeps_to_priors(&stand, &found.stand);
             let able = sound
                 && (clearly || simpler && more > -TOLERANCE)
@@ -324,6 +325,19 @@ impl State<'_> {
             }
             squares * squares > EVERYWHERE * count as f64 * fourths
         })
+    }
+
+    /// Whether a set has a law of places alone beside a map of them: the map holds it as well.
+    fn draws_twice(&self, stand: &Stand) -> bool {
+        let mapped = stand
+            .parts
+            .iter()
+            .any(|part| part.spread.is_some() && self.cause(&part.trial).form == Form::OverPosition);
+        let drawn = |part: &Part| {
+            let law = self.cause(&part.trial).law.as_ref();
+            law.is_some_and(|law| law.depends_on == ["position_m"])
+        };
+        mapped && stand.parts.iter().any(drawn)
     }
 
     /// Whether a law of a set says the same as a listed cause in other words.

@@ -5,6 +5,7 @@ use crate::catalogue::{Class, Form};
 use crate::contradiction::withhold;
 use crate::events::Event;
 use crate::faults::Fault;
+use crate::in_doubt;
 use crate::mirror::is_whole;
 use crate::prove::{Errors, Proof, prove, told_by};
 use crate::refine::{Cured, Refined, refine, spells};
@@ -15,6 +16,8 @@ use crate::{Case, DiagnoseError, System};
 
 /// An error that rises by less than this share rises by what a few runs are apart from the others.
 const RISES: f64 = 0.02;
+/// What leaves less than this share of the error that there is without it is not idle, however good the nominal scenario is.
+const HELPS: f64 = 0.6;
 
 /// What was found, with values and the proof of it.
 pub struct Proven {
@@ -35,6 +38,8 @@ impl Proven {
         by: Option<Kind>,
     ) -> Result<Self, DiagnoseError> {
         let mut refined = refine(case, system, pool, &found)?;
+        let bounds: Vec<(f64, f64)> = case.study.parameters.iter().map(|known| known.bounds).collect();
+        in_doubt::widen(&mut refined, &bounds, found.estimate.beta.as_slice());
         spells(case, system, events, &mut refined);
         let withheld = withhold(case, &mut refined);
         let proof = prove(case, system, &refined, by)?;
@@ -59,6 +64,15 @@ impl Proven {
             && self.proof.held_out.as_ref().is_some_and(worse)
     }
 
+    /// Whether all that is claimed is faults of sensors, and runs held out are worse without them.
+    fn only_makes_up_faults(&self) -> bool {
+        let mut claimed = self.refined.causes.iter();
+        !self.refined.causes.is_empty()
+            && self.withheld.is_none()
+            && claimed.all(|cured| cured.cause.class == Class::Artefact)
+            && self.worsened().is_some_and(|ratio| ratio > 1.0 + RISES)
+    }
+
     /// Error on runs held out over that of the nominal scenario, where there are any.
     fn worsened(&self) -> Option<f64> {
         let errors = self.proof.held_out?;
@@ -79,6 +93,7 @@ pub fn proven(
     let mut best = Proven::of(case, system, pool, found, events, None)?;
     // One signal tells of all of them.
     let mut withdrawn = false;
+    let fitted = best.proof.fitted;
     let by = Some(told_by(system, &best.refined));
     while let Some(worsened) = best.worsened().filter(|ratio| *ratio > 1.0 + RISES) {
         let mut least: Option<(f64, Proven)> = None;
@@ -110,8 +125,17 @@ pub fn proven(
         best.refined.learn_nothing(case);
         best.proof = prove(case, system, &best.refined, by)?;
     }
-    if withdrawn && best.refined.causes.is_empty() && best.withheld.is_none() && faults.is_empty() {
-        best.withheld = Some(nothing_left(case, &best.found));
+    if best.only_makes_up_faults() {
+        best.withheld = Some(nothing_left(best.refined.causes.iter().map(|cured| cured.cause.words)));
+        best.refined.learn_nothing(case);
+        best.proof = prove(case, system, &best.refined, by)?;
+    }
+    // What made not even the fitted runs better is nothing that anybody would miss.
+    let helped = fitted.after <= (1.0 - RISES) * best.proof.fitted.after;
+    let bare = best.refined.causes.is_empty() && best.withheld.is_none() && faults.is_empty();
+    if withdrawn && helped && bare {
+        let unproven = best.found.unproven.iter();
+        best.withheld = Some(nothing_left(unproven.map(|cause| case.causes[*cause].words)));
     }
     Ok(best)
 }
@@ -142,9 +166,12 @@ fn without_idle(
     let lesser = Proven::of(case, system, pool, found, events, by)?;
     let held_out = |one: &Proven| prove(case, system, &one.refined, Some(kind)).map(|proof| proof.held_out);
     let (with, without) = (held_out(best)?, held_out(&lesser)?);
-    let idle = with
-        .zip(without)
-        .is_some_and(|(with, without)| with.after > (1.0 - needed) * without.after.min(with.before));
+    let idle = with.zip(without).is_some_and(|(with, without)| {
+        // A nominal scenario may foresee runs that show nothing of it better than what others taught.
+        let helps = with.after < HELPS * without.after;
+        let least = if helps { without.after } else { without.after.min(with.before) };
+        with.after > (1.0 - needed) * least
+    });
     Ok(idle.then_some(lesser))
 }
 
@@ -224,8 +251,8 @@ fn harmful(mut claimed: Vec<&str>) -> String {
 }
 
 /// What is said where everything was taken back.
-fn nothing_left(case: &Case, found: &Found) -> String {
-    let mut names: Vec<&str> = found.unproven.iter().map(|cause| case.causes[*cause].words).collect();
+fn nothing_left<'a>(claimed: impl Iterator<Item = &'a str>) -> String {
+    let mut names: Vec<&str> = claimed.collect();
     names.dedup();
     format!(
         "Something is missing that these runs do not have in common: {} would explain those that were fitted and does \

@@ -27,6 +27,9 @@ pub struct Finding {
     pub kind: String,
     /// The contract's id.
     pub id: String,
+    /// The balance in which it was found.
+    #[serde(default)]
+    pub balance: String,
     /// Its parameters.
     #[serde(default)]
     pub parameters: Vec<Interval>,

@@ -2,7 +2,7 @@
 
 use super::diagnosis::{Diagnosis, Finding, Fit, Interval};
 use super::statistics::correlation;
-use crate::truth::{Cause, Truth};
+use crate::truth::{Cause, Prior, Truth};
 use headland_trace::Run;
 use std::f64::consts::{PI, TAU};
 
@@ -288,6 +288,16 @@ fn reconstruction(
         Some(column) if suffix == "_w" => column.clone(),
         _ => cause.column.clone(),
     };
+    // What was hidden is told as the power of the fuel, an equation of the shaft's balance as that of the shaft.
+    let named = |one: &&Prior| one.path.ends_with("willans_efficiency");
+    let fuel_per_shaft = truth.nominal.iter().find(named).map_or(1.0, |one| 1.0 / one.truth);
+    let as_hidden = |column: &str| {
+        let mut found = diagnosis.findings.iter();
+        let of_shaft = found.any(|finding| {
+            finding.kind == "unlisted" && finding.balance == "shaft" && column.starts_with(&finding.id)
+        });
+        if of_shaft && column.ends_with("_w") { fuel_per_shaft } else { 1.0 }
+    };
     let told = (!truth.held_out.is_empty()).then(|| truth.held_out.clone());
     let chosen =
         || diagnosis.fit.as_ref().and_then(|fit| fit.held_out.as_ref()).map(|part| part.runs.clone());
@@ -301,7 +311,10 @@ fn reconstruction(
             continue;
         }
         for (row, time_s) in run.trace.time_s().iter().enumerate() {
-            let sum: f64 = columns.iter().filter_map(|name| effect.trace.at(name, *time_s)).sum();
+            let sum: f64 = columns
+                .iter()
+                .filter_map(|name| Some(as_hidden(name) * effect.trace.at(name, *time_s)?))
+                .sum();
             let hidden: f64 = causes
                 .iter()
                 .filter(in_unit)

@@ -222,3 +222,25 @@ fn a_force_without_a_measured_force_is_held_against_in_power() {
     let judged = judge(&truth, &said, None, &[along], &[force_of("wind_w", 700.0)]);
     assert!(judged.reconstruction.unwrap().r2 > 0.999);
 }
+
+/// An equation of the shaft's balance gives the power of the shaft; what was hidden is told as that of the fuel, at 40 %.
+#[test]
+fn an_equation_of_the_shaft_is_held_against_what_it_takes_of_the_fuel() {
+    let mut truth = truth(&["unlisted"]);
+    truth.hidden[0].column = "unlisted_w".to_owned();
+    let efficiency = Prior {
+        path: "vehicle.driveline.willans_efficiency".to_owned(),
+        truth: 0.4,
+        ..truth.nominal[0].clone()
+    };
+    truth.nominal.push(efficiency);
+    let judged = |balance: &str, watts: f64| {
+        let finding = finding("unlisted", "unlisted", "").replace("motion", balance);
+        let said = said("unlisted", &finding);
+        judge(&truth, &said, None, &[force_of("unlisted_w", 1000.0)], &[force_of("unlisted_w", watts)]).found
+    };
+    assert_eq!(judged("shaft", 400.0), [Found::Right]);
+    assert_eq!(judged("fuel", 400.0), [Found::Rough]);
+    assert_eq!(judged("fuel", 1000.0), [Found::Right]);
+    assert_eq!(judged("shaft", 1000.0), [Found::Rough]);
+}

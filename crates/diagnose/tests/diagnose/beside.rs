@@ -1,7 +1,7 @@
 //! Causes beside others, at their size, and on runs that they were not fitted to.
 
 use super::setting::{found, named, recorded};
-use headland_diagnose::{Options, Verdict};
+use headland_diagnose::{FindingKind, Options, Verdict};
 
 /// A storm pushes with the square of its speed: in proportion to a breeze it would be told far too weak or too strong.
 #[test]
@@ -88,4 +88,52 @@ fn pulls_too_weak_to_stand_out_by_themselves_are_told_by_their_edges() {
         assert!(own.len() == 1, "{id}: {own:?}");
         assert!((own[0].from_s - from_s).abs() < 0.6 && (own[0].to_s - to_s).abs() < 0.6, "{id}: {own:?}");
     }
+}
+
+/// Two lanes, soft in places and dry throughout: a scenario that is right about the dry one foresees it by itself, and better
+/// than a map that others taught; without the map they teach that the dry one is soft.
+#[test]
+fn a_map_is_claimed_though_the_lane_that_is_held_out_has_nothing_on_it() {
+    const LEVEL: f64 = 0.069;
+    let patches = "soft_ground(positions_m: [20.0, 35.0, 52.0, 65.0], \
+                   coefficients: [0.02, 0.0, 0.02])";
+    let (mut recording, dry) = (recorded(LEVEL, patches), recorded(LEVEL, ""));
+    for place in [3, 4] {
+        recording.runs[place].trace = dry.runs[place].trace.clone();
+        recording.runs[place].path = Some("other lane".to_owned());
+    }
+    let found = found(&recording, &Options::default()).unwrap();
+    assert!(named(&found, "soft_ground"), "{}", found.diagnosis.answer);
+}
+
+/// A road that rises and falls as waves do: a map holds the wave as well as everything else that the road does.
+#[test]
+fn a_wavy_road_is_told_as_slopes_and_not_as_a_formula_beside_them() {
+    let height = |x: f64| 0.02 * (x / 4.5).sin() + 0.006 * (x / 2.3 + 1.0).sin() * (1.0 + x / 60.0);
+    let (positions, grades): (Vec<f64>, Vec<f64>) =
+        (0..=130).map(|metre| (f64::from(metre), height(f64::from(metre)))).unzip();
+    let hidden = format!("grade(positions_m: {positions:?}, grades: {grades:?})");
+    let found = found(&recorded(0.069, &hidden), &Options::default()).unwrap();
+    assert!(named(&found, "grade"), "{}", found.diagnosis.answer);
+    let formula = found.diagnosis.findings.iter().any(|finding| finding.id == "unlisted");
+    assert!(!formula, "{}", found.diagnosis.answer);
+}
+
+/// A force that goes in waves along the lane, which lie elsewhere in every run: nothing that runs share, and no clock that is
+/// wrong by hundredths.
+#[test]
+fn a_fault_of_a_sensor_that_makes_an_unseen_run_worse_is_not_claimed() {
+    let of_run = |run: usize| {
+        let wave = format!(
+            "expression(resistance: \"a_n * sin(x / l_m + phase_rad)\", \
+             constants: {{\"a_n\": 1500.0, \"l_m\": 2.1, \"phase_rad\": {:.1}}})",
+            1.9 * run as f64
+        );
+        recorded(0.069, &wave).runs[run].clone()
+    };
+    let mut recording = recorded(0.069, "");
+    recording.runs = [0, 1, 4].map(of_run).into();
+    let found = found(&recording, &Options::default()).unwrap().diagnosis;
+    let fault = found.findings.iter().any(|finding| finding.kind == FindingKind::Artefact);
+    assert!(!fault, "{}", found.answer);
 }

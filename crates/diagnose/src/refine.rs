@@ -11,7 +11,7 @@ use crate::said::{Said, said};
 use crate::search::{Accepted, Found};
 use crate::sensors::is_no_fault;
 use crate::trial::{Pool, Trial, for_run};
-use crate::widths::{Widths, widths};
+use crate::widths::{Beyond, Widths, widths};
 use crate::{Case, DiagnoseError, Kind, System};
 use headland_calibrate::fit::{Estimate, Fit, Parameter, Residuals, fit};
 use headland_scenario::Scenario;
@@ -121,9 +121,9 @@ pub fn refine(
     found: &Found,
 ) -> Result<Refined, DiagnoseError> {
     case.step("fitting")?;
-    let widths = widths(case, system, pool, found)?;
+    let beyond = widths(case, system, pool, found)?;
     let pool: &Pool = pool;
-    let mut refined = linear(case, pool, found, &widths);
+    let mut refined = linear(case, pool, found, &beyond);
     let physics: Vec<usize> = (0..refined.causes.len())
         .filter(|place| refined.causes[*place].cause.form == Form::Parameters)
         .collect();
@@ -208,11 +208,12 @@ fn no_wider(ci95: [f64; 2], estimate: &Estimate) -> [f64; 2] {
 /// The linear estimate, shapes taken as known.
 pub fn plain(case: &Case, pool: &Pool, found: &Found) -> Refined {
     let of = |accepted: &Accepted| vec![0.0; case.causes[accepted.trial.cause].terms.len()];
-    linear(case, pool, found, &found.accepted.iter().map(of).collect::<Vec<Widths>>())
+    let causes = found.accepted.iter().map(of).collect();
+    linear(case, pool, found, &Beyond { causes, free: vec![0.0; case.study.parameters.len()] })
 }
 
 /// The linear estimate.
-fn linear(case: &Case, pool: &Pool, found: &Found, widths: &[Widths]) -> Refined {
+fn linear(case: &Case, pool: &Pool, found: &Found, beyond: &Beyond) -> Refined {
     let interval = |position: usize, value: f64| {
         let half = HALF_95 * found.estimate.covariance[(position, position)].sqrt();
         [value - half, value + half]
@@ -220,10 +221,14 @@ fn linear(case: &Case, pool: &Pool, found: &Found, widths: &[Widths]) -> Refined
     let parameters = case.study.parameters.iter().enumerate();
     let free = parameters.map(|(position, one)| {
         let value = (one.value + found.estimate.beta[position]).clamp(one.bounds.0, one.bounds.1);
-        Free { name: one.name.clone(), prior: one.value, value, ci95: interval(position, value) }
+        let known = found.estimate.covariance[(position, position)].sqrt();
+        // No shape of a cause takes away what was known before.
+        let most = one.sd.unwrap_or(f64::INFINITY).max(known);
+        let half = HALF_95 * known.hypot(beyond.free[position]).min(most);
+        Free { name: one.name.clone(), prior: one.value, value, ci95: [value - half, value + half] }
     });
     let mut causes: Vec<Cured> = Vec::new();
-    for (accepted, widths) in found.accepted.iter().zip(widths) {
+    for (accepted, widths) in found.accepted.iter().zip(&beyond.causes) {
         let cause = case.causes[accepted.trial.cause].clone();
         let values = if cause.is_function() { Vec::new() } else { started(case, accepted, found, widths) };
         causes.push(Cured { cause, accepted: accepted.clone(), values, events: Vec::new(), mirrored: None });

@@ -57,11 +57,16 @@ pub struct Law {
     pub each: Vec<Law>,
 }
 
+/// Constants as the effect `expression` takes them: `{"a1_n": 120.0, "v1_m_s": 5.0}`.
+pub fn constants_text(constants: &[Constant]) -> String {
+    let one = |constant: &Constant| format!("\"{}\": {:?}", constant.name, constant.value);
+    format!("{{{}}}", constants.iter().map(one).collect::<Vec<_>>().join(", "))
+}
+
 impl Law {
-    /// The constants as the effect `expression` takes them: `{"a1_n": 120.0, "v1_m_s": 5.0}`.
+    /// Its constants as the effect `expression` takes them.
     pub fn constants_text(&self) -> String {
-        let one = |constant: &Constant| format!("\"{}\": {:?}", constant.name, constant.value);
-        format!("{{{}}}", self.constants.iter().map(one).collect::<Vec<_>>().join(", "))
+        constants_text(&self.constants)
     }
 
     /// Names of the variables that stand in it, as far as they are known to formulas.

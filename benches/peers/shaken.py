@@ -18,17 +18,19 @@ import numpy as np
 import pyarrow.parquet as parquet
 
 SCENARIOS = pathlib.Path(__file__).resolve().parents[2] / "scenarios"
-NOISE = {"speed_m_s": 0.02, "wheel_speed_m_s": 0.01, "tractive_force_n": 100.0}
+NOISE = {"speed_m_s": 0.02, "wheel_speed_m_s": 0.01, "tractive_force_n": 100.0, "roll_rad": 0.002,
+         "vertical_acceleration_m_s2": 0.05}
 SEED, SLOWEST_M_S = 1, 0.3
 
 ROUGH, PULLS = "coast_down_rough.ron", "pulls_rigid.ron"
-COASTING = ["time_s", "speed_m_s", "position_m", "coasting"]
-DRIVEN = ["time_s", "speed_m_s", "wheel_speed_m_s", "position_m", "tractive_force_n", "drawbar_force_n", "grade"]
+COASTING = ["time_s", "speed_m_s", "position_m", "coasting", "roll_rad", "vertical_acceleration_m_s2"]
+DRIVEN = ["time_s", "speed_m_s", "wheel_speed_m_s", "position_m", "tractive_force_n", "drawbar_force_n", "grade", "roll_rad",
+          "vertical_acceleration_m_s2"]
 LEVEL = ('ground: include("grounds/rough_ground.ron")', "ground: (terrain: Flat, soil: Constant(coefficient: 0.045))")
-SLOPES = ("inputs: []", "inputs: [Grade]")
+SLOPES = ("inputs: []", "inputs: [Grade, Roll, VerticalAcceleration]")
 LOW = ('vehicle: include("vehicles/xerion_3800_body.ron")', 'vehicle: include("vehicle.ron")')
 PULL = ('    tasks: {"pull": Drawbar(force_n: "10 kN")},\n', "")
-GIVEN = ("inputs: []", "inputs: [Grade, DrawbarForce]")
+GIVEN = ("inputs: []", "inputs: [Grade, DrawbarForce, Roll, VerticalAcceleration]")
 HEAD = """# Shaking and unlike loads, which one dimension does not know
 
 Runs of the rigid body, with noise on the speed (0.02 m/s), the speed of the wheels (0.01 m/s) and the tractive force (100

@@ -102,14 +102,20 @@ impl Draped {
         let u = self.along_map_m(s);
         let pose = self.line.at(u);
         if let Some(spot) = surface.spot(pose.east_m, pose.north_m) {
-            return on_ground(&pose, spot.height_m, along(&spot, pose.heading_rad));
+            return on_ground(&pose, spot.height_m, slopes(&spot, pose.heading_rad));
         }
         let end = u.clamp(0.0, self.line.length_m());
         let last = self.line.at(end);
         let spot = surface.spot(last.east_m, last.north_m).unwrap_or_default();
-        let rise = along(&spot, last.heading_rad);
-        on_ground(&pose, spot.height_m + (u - end) * rise, rise)
+        let (rise, fall) = slopes(&spot, last.heading_rad);
+        on_ground(&pose, spot.height_m + (u - end) * rise, (rise, fall))
     }
+}
+
+/// Rise along a heading and fall to its right, per metre of the map.
+fn slopes(spot: &Spot, heading_rad: f64) -> (f64, f64) {
+    let (sin, cos) = heading_rad.sin_cos();
+    (along(spot, heading_rad), spot.rise_north * sin - spot.rise_east * cos)
 }
 
 /// Rise per metre of the map in a direction.

@@ -67,6 +67,7 @@ impl Incline {
         Place {
             elevation_m: up_m * sin_plane,
             sin_slope: sin_plane * (pose.heading_rad - self.uphill_rad).cos(),
+            sin_roll: sin_plane * (pose.heading_rad - self.uphill_rad).sin(),
             east_m: pose.east_m + shortened_m * sin,
             north_m: pose.north_m + shortened_m * cos,
             ..flat

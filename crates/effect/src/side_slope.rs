@@ -10,8 +10,9 @@
 //!
 //! Source: Mitschke and Wallentowitz, *Dynamik der Kraftfahrzeuge* (2014), resistance of cornering, here for the side force of a slope;
 //! moments about the footprints, and the initial slope of the pull-slip curve, Wong, *Theory of Ground Vehicles* (2008), section 1.4.
-//! Holds for small slip angles and a load that moves by less than half. A chassis leans further than its ground, by a
-//! twentieth on tyres alone: measured on the chassis, the stiffness comes out larger by twice that share.
+//! Holds for small slip angles and a load that moves by less than half. Leaves out that the ground carries cos φ of the weight
+//! and resists so much less; and a chassis leans further than its ground, by a twentieth on tyres alone. So the stiffness that a
+//! recording of the chassis shows is a tenth or two above that of the tyres.
 //! Fingerprint: a drag with the square of the side slope, the same at all speeds and to both sides, and slip under pull with it.
 
 use headland_plugin::{Action, Bound, Card, Effect, Plugin, Situation, parameter};
@@ -33,7 +34,8 @@ impl Plugin for SideSlope {
         equation: "F = S (S − 2 m v² κ) / C, S = m g sin φ; s = k F_x tan² φ / N",
         source: "Mitschke and Wallentowitz, Dynamik der Kraftfahrzeuge (2014), resistance of cornering; pull-slip curve: Wong, \
                  Theory of Ground Vehicles (2008), section 1.4",
-        validity: "small slip angles, loads that move by less than half; leaves out what the chassis leans beyond its ground",
+        validity: "small slip angles, loads that move by less than half; leaves out the load that the ground loses, and what the \
+                   chassis leans beyond its ground",
         parameters: &[
             parameter(
                 "cornering_stiffness_n_per_rad",

@@ -237,6 +237,22 @@ mod tests {
         assert!((moved / step - 1.0).abs() < 1e-6, "{moved}");
     }
 
+    /// Northward along a slope that rises to the east the left side is lower; aslant, the parts along and across make the slope.
+    #[test]
+    fn a_path_along_a_slope_leans_away_from_where_it_rises() {
+        let plane = Incline { grade: 0.75, uphill_rad: FRAC_PI_2 };
+        let lean = |heading: f64| {
+            let place = plane.place(&PlanePath::heading(heading).at(5.0));
+            (place.sin_slope, place.sin_roll)
+        };
+        for (heading, along, across) in [(0.0, 0.0, -0.6), (PI, 0.0, 0.6), (FRAC_PI_2, 0.6, 0.0)] {
+            let found = lean(heading);
+            assert!((found.0 - along).abs() < 1e-12 && (found.1 - across).abs() < 1e-12, "{found:?}");
+        }
+        let (along, across) = lean(0.3);
+        assert!((along.hypot(across) - 0.6).abs() < 1e-12);
+    }
+
     #[test]
     fn the_path_lies_on_the_surface() {
         let mut path = PlanePath::heading(0.4);

@@ -9,8 +9,8 @@
 //!
 //! Source: balance of power of one mass on spring and damper, as in Wong, *Theory of Ground Vehicles* (2008), chapter 7; that the
 //! motion pays for it: Smith and Swift, "Power dissipation in automotive suspensions", Vehicle System Dynamics 49 (2011) 59.
-//! Holds for τω ≪ 1, on ground that is alike over a second. Slower than v₀ the force is what it is at v₀: an engine shakes a
-//! vehicle that stands. The mean square is that of a second of the recording; a run without one has that of `vertical_acceleration_m_s2`.
+//! Holds for τω ≪ 1, on ground that is alike over two seconds. Slower than v₀ the force is what it is at v₀: an engine shakes a
+//! vehicle that stands. The mean square is that of two seconds of the recording; a run without one has that of `vertical_acceleration_m_s2`.
 //! Fingerprint: a drag with the square of the shaking, over the speed; none on smooth ground of the same soil.
 
 use headland_plugin::{Action, Bound, Card, Effect, Plugin, Situation, parameter};
@@ -35,7 +35,7 @@ impl Plugin for Roughness {
         equation: "F = m τ ⟨a²⟩ / max(v, 0.5 m/s)",
         source: "power of a damper beside a spring, as in Wong, Theory of Ground Vehicles (2008), chapter 7; Smith and Swift, \
                  Vehicle System Dynamics 49 (2011) 59",
-        validity: "ground that is alike over a second; pitch and roll in proportion to the bounce",
+        validity: "ground that is alike over two seconds; pitch and roll in proportion to the bounce",
         parameters: &[
             parameter("time_constant_s", "s", "damping over stiffness of what the vehicle springs on, τ")
                 .must_be(Bound::NotNegative)

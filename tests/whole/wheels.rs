@@ -49,6 +49,26 @@ fn firmer_ground_gives_more_of_the_power_to_the_pull_with_less_slip() {
     assert!(soft[1] > soft[0], "{soft:?}");
 }
 
+/// A lane along a side slope of 25 %, a turn downhill and a lane back, where side forces of slope and turn add up or not: the law of
+/// one dimension takes what the tyres of the rigid body lose as they slip aside, which on the slope have softened by 7 %.
+#[test]
+fn a_side_slope_and_the_turn_on_it_cost_one_dimension_what_they_cost_the_rigid_body() {
+    let registry = headland_stock::registry();
+    let drive = |name: &str| {
+        let scenario = Scenario::read(&root().join("scenarios").join(name), &registry).unwrap();
+        let model = scenario.model(&registry).unwrap();
+        let outcome = scenario.fidelity.simulate(&model, scenario.cycle.as_ref().unwrap()).unwrap();
+        assert_eq!(outcome.end, End::Finished);
+        outcome
+    };
+    let (flat, rigid) = (drive("side_slope.ron"), drive("side_slope_rigid.ron"));
+    let said = account(&flat, "cornering_drag") + account(&flat, "side_slope");
+    let lost = account(&rigid, "side slip");
+    assert!((said / lost - 1.0).abs() < 0.07, "{said} J, {lost} J");
+    let [said, lost] = [&flat, &rigid].map(|outcome| account(outcome, "slip"));
+    assert!((said / lost - 1.0).abs() < 0.2, "{said} J, {lost} J");
+}
+
 /// The coefficient of the coast-down study, 0.06906 with four equal loads, and the soil of 955 kPa that it stands for. What
 /// the loads move to and fro is of second order: a thousandth of the way.
 #[test]

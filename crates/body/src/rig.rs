@@ -56,6 +56,8 @@ pub(crate) struct Rig<'a> {
     way: f64,
     resting: bool,
     acceleration_m_s2: Option<f64>,
+    /// Of the centre of gravity, upward [m/s²].
+    rising_m_s2: f64,
     digging_s: f64,
     own: Own,
     first_spring_j: f64,
@@ -137,6 +139,7 @@ impl<'a> Rig<'a> {
             way: if start.speed_m_s == 0.0 { 0.0 } else { start.speed_m_s.signum() },
             resting: start.speed_m_s == 0.0,
             acceleration_m_s2: None,
+            rising_m_s2: 0.0,
             digging_s: 0.0,
             own: Own::default(),
             first_spring_j: 0.0,

@@ -171,8 +171,15 @@ fn slope(model: &Model, modelled: &Trace, mass_kg: &[f64]) -> Vec<f64> {
 /// Every recorded circumstance, whatever the scenario's replay is told.
 fn inputs(trace: &Trace, how: &Replay) -> Vec<Inputs> {
     let mut also = how.also.clone();
-    let circumstances =
-        [Inputs::Coasting, Inputs::Curvature, Inputs::AirTemperature, Inputs::Heading, Inputs::EngineSpeed];
+    let circumstances = [
+        Inputs::Coasting,
+        Inputs::Curvature,
+        Inputs::Roll,
+        Inputs::VerticalAcceleration,
+        Inputs::AirTemperature,
+        Inputs::Heading,
+        Inputs::EngineSpeed,
+    ];
     // Where a torque but no force is known the engine's speed is the model's own: a power that is made of the motion is uneven,
     // and at a speed that is given the full load would cut off its peaks.
     let has = |name: &str| trace.get(name).is_some();

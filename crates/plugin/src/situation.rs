@@ -44,6 +44,8 @@ pub struct Situation {
     pub braking: bool,
     /// Force of the driven wheels on the vehicle, forward [N].
     pub tractive_force_n: f64,
+    /// How hard the vehicle is shaken: its vertical acceleration in the mean square [m²/s⁴]; `None` where nothing says so.
+    pub shaking_m2_s4: Option<f64>,
 }
 
 impl Air {

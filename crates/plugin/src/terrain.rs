@@ -10,6 +10,8 @@ pub struct Place {
     pub elevation_m: f64,
     /// Sine of the slope: rise per metre of path, positive uphill.
     pub sin_slope: f64,
+    /// Sine of the slope across the path: fall per metre to the right. 0 where only the path itself is known.
+    pub sin_roll: f64,
     /// Direction of travel, clockwise from north [rad].
     pub heading_rad: f64,
     /// Turn per metre of path, clockwise [1/m].

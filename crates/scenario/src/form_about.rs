@@ -185,6 +185,8 @@ pub const ABOUT: &[(&str, &str, &str)] = &[
     ("scenario", "replay.inputs.Grade", "slope of the path"),
     ("scenario", "replay.inputs.Heading", "direction of the path"),
     ("scenario", "replay.inputs.Curvature", "of the path"),
+    ("scenario", "replay.inputs.Roll", "how far the vehicle leans, right side down"),
+    ("scenario", "replay.inputs.VerticalAcceleration", "of the vehicle, which says how hard it is shaken"),
     ("scenario", "replay.inputs.Wind", "speed and direction"),
     ("scenario", "replay.inputs.AirTemperature", "of the air"),
     ("scenario", "replay.inputs.AuxiliaryPower", "of other consumers"),

@@ -380,6 +380,8 @@ fn replay_settings(file: &ScenarioFile) -> ReplaySettings {
                 InputFile::Grade => Inputs::Grade,
                 InputFile::Heading => Inputs::Heading,
                 InputFile::Curvature => Inputs::Curvature,
+                InputFile::Roll => Inputs::Roll,
+                InputFile::VerticalAcceleration => Inputs::VerticalAcceleration,
                 InputFile::Wind => Inputs::Wind,
                 InputFile::AirTemperature => Inputs::AirTemperature,
                 InputFile::AuxiliaryPower => Inputs::AuxiliaryPower,

@@ -138,6 +138,8 @@ pub enum InputFile {
     Grade,
     Heading,
     Curvature,
+    Roll,
+    VerticalAcceleration,
     Wind,
     AirTemperature,
     AuxiliaryPower,

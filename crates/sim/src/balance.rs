@@ -43,6 +43,8 @@ pub(crate) struct Given {
     pub sin_slope: Option<f64>,
     pub heading_rad: Option<f64>,
     pub curvature_per_m: Option<f64>,
+    pub roll_rad: Option<f64>,
+    pub shaking_m2_s4: Option<f64>,
     pub air: Option<Air>,
     pub auxiliary_power_w: Option<f64>,
     pub drawbar_force_n: Option<f64>,
@@ -359,6 +361,8 @@ impl Model {
         let mut place = self.terrain.at(position_m);
         if given.reversed_from_m.is_some() {
             place.sin_slope = -place.sin_slope;
+            place.sin_roll = -place.sin_roll;
+            place.curvature_per_m = -place.curvature_per_m;
             place.heading_rad += std::f64::consts::PI;
         }
         if let Some(sin_slope) = given.sin_slope {
@@ -369,6 +373,9 @@ impl Model {
         }
         if let Some(curvature) = given.curvature_per_m {
             place.curvature_per_m = curvature;
+        }
+        if let Some(roll) = given.roll_rad {
+            place.sin_roll = roll.sin() * place.cos_slope();
         }
         Situation {
             time_s: point.time_s,
@@ -384,6 +391,7 @@ impl Model {
             coasting: command == Command::Coast,
             braking: given.braking,
             tractive_force_n: 0.0,
+            shaking_m2_s4: given.shaking_m2_s4,
         }
     }
 

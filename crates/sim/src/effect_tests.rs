@@ -1,12 +1,14 @@
 //! What effects may do to the balances, one by one and together.
 
 use crate::{
-    Cycle, Drive, Model, Named, Outcome, Phase, Replay, Resistance, Start, Until, Vehicle, replay, simulate,
+    Cycle, Drive, Inputs, Model, Named, Outcome, Phase, Replay, Resistance, Start, Until, Vehicle, replay,
+    simulate,
 };
 use headland_plugin::{
     Action, Air, Contact, Delivery, Demand, Driveline, Effect, MAX_LOSSES, Place, Readings, Situation, Soil,
     Terrain,
 };
+use headland_trace::{Origin, Trace};
 
 const MASS_KG: f64 = 1000.0;
 
@@ -43,6 +45,27 @@ struct Level;
 impl Terrain for Level {
     fn at(&self, _: f64) -> Place {
         Place::default()
+    }
+}
+
+/// A turn to the right on ground that falls to the right.
+#[derive(Debug)]
+struct Aslant;
+
+impl Terrain for Aslant {
+    fn at(&self, _: f64) -> Place {
+        Place { sin_roll: 0.1, curvature_per_m: 0.02, ..Place::default() }
+    }
+}
+
+/// Pushes by what it is told of lean, turn and shaking.
+#[derive(Debug)]
+struct Feels;
+
+impl Effect for Feels {
+    fn act(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Action {
+        let force_n = 1e3 * at.place.sin_roll + 1e5 * at.place.curvature_per_m;
+        Action { force_n: force_n + at.shaking_m2_s4.unwrap_or(0.0), ..Action::default() }
     }
 }
 
@@ -268,4 +291,34 @@ fn wheels_slip_by_a_recorded_force_that_no_driveline_gives() {
     let replayed = replay(&slips, &recorded.trace, &how).unwrap();
     let of = |channel: &str| replayed.trace.get(channel).unwrap()[50];
     assert!((of("wheel_speed_m_s") - of("speed_m_s") / 0.94).abs() < 1e-9, "{}", of("wheel_speed_m_s"));
+}
+
+/// Driven from its end a curve to the right is one to the left, and its lower side is on the left; a log knows both itself.
+#[test]
+fn a_path_leans_and_turns_the_other_way_from_its_end_and_as_the_log_says() {
+    let mut feels = model(vec![Box::new(Feels)]);
+    feels.terrain = Box::new(Aslant);
+    let time_s: Vec<f64> = (0..41).map(|row| 0.05 * f64::from(row)).collect();
+    let mut log = Trace::new(time_s).unwrap();
+    log.push("speed_m_s", vec![10.0; 41], Origin::Measured).unwrap();
+    log.push("roll_rad", vec![0.3; 41], Origin::Measured).unwrap();
+    // Of ±2 m/s² about gravity all 41 are within a second of the middle; their mean is 2/41 off.
+    let shaken = (0..41).map(|row| 9.81 + if row % 2 == 0 { 2.0 } else { -2.0 }).collect();
+    log.push("vertical_acceleration_m_s2", shaken, Origin::Measured).unwrap();
+    let felt_n = |reversed_from_m: Option<f64>, also: Vec<Inputs>| {
+        let how = Replay {
+            drive: Drive::Speed,
+            also,
+            window_s: None,
+            smoothing_s: 0.1,
+            step_s: 0.01,
+            reversed_from_m,
+        };
+        replay(&feels, &log, &how).unwrap().trace.get("effect_0_n").unwrap()[20]
+    };
+    assert!((felt_n(None, Vec::new()) - 2100.0).abs() < 1e-9);
+    assert!((felt_n(Some(90.0), Vec::new()) + 2100.0).abs() < 1e-9);
+    let told_n = felt_n(None, vec![Inputs::Roll, Inputs::VerticalAcceleration]);
+    let expected_n = 1e3 * 0.3f64.sin() + 2000.0 + 4.0 * (1.0 - 1.0 / 1681.0);
+    assert!((told_n - expected_n).abs() < 1e-9, "{told_n}");
 }

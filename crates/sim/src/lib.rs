@@ -32,6 +32,7 @@ mod reference;
 mod replay;
 mod rolling;
 mod root;
+mod shaking;
 mod simulation;
 mod slope;
 mod step;

@@ -7,6 +7,7 @@
 use crate::balance::{Command, Given};
 use crate::ledger::Ledger;
 use crate::recorder::Recorder;
+use crate::shaking::shaking_m2_s4;
 use crate::slope::{LocalFit, local_fit, travelled};
 use crate::step::{Machine, Moment};
 use crate::{End, Model, Outcome};
@@ -53,6 +54,8 @@ pub enum Inputs {
     Grade,
     Heading,
     Curvature,
+    Roll,
+    VerticalAcceleration,
     Wind,
     AirTemperature,
     AuxiliaryPower,
@@ -68,10 +71,12 @@ pub enum Inputs {
 
 impl Inputs {
     /// Every circumstance that a model is told without being asked to.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Grade,
         Self::Heading,
         Self::Curvature,
+        Self::Roll,
+        Self::VerticalAcceleration,
         Self::Wind,
         Self::AirTemperature,
         Self::AuxiliaryPower,
@@ -87,6 +92,8 @@ impl Inputs {
             Self::Grade => &["grade"],
             Self::Heading => &["heading_rad"],
             Self::Curvature => &["curvature_per_m"],
+            Self::Roll => &["roll_rad"],
+            Self::VerticalAcceleration => &["vertical_acceleration_m_s2"],
             Self::Wind => &["wind_speed_m_s", "wind_direction_rad"],
             Self::AirTemperature => &["air_temperature_c"],
             Self::AuxiliaryPower => &["auxiliary_power_w"],
@@ -155,6 +162,8 @@ struct Tape<'a> {
     /// Force at the wheels [N], or torque [N m], by what drives.
     push: Option<&'a [f64]>,
     also: Vec<(Inputs, Vec<&'a [f64]>)>,
+    /// Empty where no vertical acceleration is told.
+    shaking_m2_s4: Vec<f64>,
     state_of_charge: Option<&'a [f64]>,
 }
 
@@ -195,9 +204,11 @@ impl<'a> Tape<'a> {
             }
             also.push((*input, columns));
         }
+        let told = also.iter().find(|(input, _)| *input == Inputs::VerticalAcceleration);
+        let shaking_m2_s4 = told.map_or_else(Vec::new, |(_, columns)| shaking_m2_s4(time_s, columns[0]));
         let state_of_charge = recorded.get("state_of_charge");
         let reversed_from_m = how.reversed_from_m;
-        Ok(Self { reversed_from_m, time_s, motion, position_m, push, also, state_of_charge })
+        Ok(Self { reversed_from_m, time_s, motion, position_m, push, also, shaking_m2_s4, state_of_charge })
     }
 
     /// The circumstances at a share of the way from sample `index` to the next, and whether the vehicle coasts.
@@ -214,6 +225,8 @@ impl<'a> Tape<'a> {
                 Inputs::Grade => given.sin_slope = Some(value(0).atan().sin()),
                 Inputs::Heading => given.heading_rad = Some(columns[0][index]),
                 Inputs::Curvature => given.curvature_per_m = Some(value(0)),
+                Inputs::Roll => given.roll_rad = Some(value(0)),
+                Inputs::VerticalAcceleration => given.shaking_m2_s4 = Some(self.shaking_m2_s4[index]),
                 Inputs::Wind => {
                     let air = given.air.get_or_insert(model.air);
                     (air.wind_speed_m_s, air.wind_from_rad) = (value(0), columns[1][index]);

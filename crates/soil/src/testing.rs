@@ -29,6 +29,7 @@ pub const ON: WheelContact<'static> = WheelContact {
         elevation_m: 0.0,
         sin_slope: 0.0,
         heading_rad: 0.0,
+        sin_roll: 0.0,
         curvature_per_m: 0.0,
         east_m: 0.0,
         north_m: 0.0,

@@ -20,7 +20,7 @@ mod tests {
     use headland_plugin::{Card, Kind, Parameter};
 
     /// The effects that every version knows.
-    const EFFECTS: [&str; 31] = [
+    const EFFECTS: [&str; 33] = [
         "wind",
         "grade",
         "grade_constant",
@@ -38,6 +38,8 @@ mod tests {
         "brake_drag",
         "braking",
         "cornering_drag",
+        "side_slope",
+        "roughness",
         "load_dependence",
         "drawbar_load",
         "speed_threshold",

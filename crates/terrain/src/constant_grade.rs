@@ -48,6 +48,7 @@ impl Terrain for ConstantGrade {
             elevation_m: s * sin_slope,
             sin_slope,
             heading_rad: self.heading_rad,
+            sin_roll: 0.0,
             curvature_per_m: 0.0,
             east_m: s * cos_slope * sin,
             north_m: s * cos_slope * cos,

@@ -102,14 +102,20 @@ impl Draped {
         let u = self.along_map_m(s);
         let pose = self.line.at(u);
         if let Some(spot) = surface.spot(pose.east_m, pose.north_m) {
-            return on_ground(&pose, spot.height_m, along(&spot, pose.heading_rad));
+            return on_ground(&pose, spot.height_m, slopes(&spot, pose.heading_rad));
         }
         let end = u.clamp(0.0, self.line.length_m());
         let last = self.line.at(end);
         let spot = surface.spot(last.east_m, last.north_m).unwrap_or_default();
-        let rise = along(&spot, last.heading_rad);
-        on_ground(&pose, spot.height_m + (u - end) * rise, rise)
+        let (rise, fall) = slopes(&spot, last.heading_rad);
+        on_ground(&pose, spot.height_m + (u - end) * rise, (rise, fall))
     }
+}
+
+/// Rise along a heading and fall to its right, per metre of the map.
+fn slopes(spot: &Spot, heading_rad: f64) -> (f64, f64) {
+    let (sin, cos) = heading_rad.sin_cos();
+    (along(spot, heading_rad), spot.rise_north * sin - spot.rise_east * cos)
 }
 
 /// Rise per metre of the map in a direction.
@@ -128,6 +134,7 @@ fn rise(line: &MapLine, surface: &dyn Surface, u: f64) -> Result<f64, OffMap> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plane::Incline;
     use crate::plane::PlanePath;
     use headland_plugin::Bounds;
 
@@ -175,6 +182,23 @@ mod tests {
             let turned = (two.heading_rad - one.heading_rad) / h;
             assert!((turned - one.curvature_per_m).abs() < 1e-4, "{s}");
             s += 0.37;
+        }
+    }
+
+    /// On a plane both know: headings of the map are not those of the plane, slopes are the same.
+    #[test]
+    fn a_line_over_a_plane_leans_as_the_plane_does() {
+        let plane = Incline { grade: 0.75, uphill_rad: 1.1 };
+        for heading in [0.2, 1.4, 3.0] {
+            let mut path = PlanePath::heading(heading);
+            path.go(10.0, 0.0, 0.0);
+            let draped =
+                Draped::over(MapLine::Plane(path, Corner { east_m: 0.0, north_m: 0.0 }), &plane, 1.0)
+                    .unwrap();
+            let place = draped.at(&plane, 4.0);
+            // Along a plane of sin ψ = 0.6 the whole of it is in the two slopes; across, it falls to the right left of uphill.
+            assert!((place.sin_slope.hypot(place.sin_roll) - 0.6).abs() < 1e-12, "{place:?}");
+            assert_eq!(place.sin_roll > 0.0, heading > 1.1, "{place:?}");
         }
     }
 

@@ -301,12 +301,13 @@ impl Track {
     }
 }
 
-/// A pose with the height and the slope that the ground gives it.
-pub(crate) fn on_ground(pose: &Pose, height_m: f64, rise: f64) -> Place {
+/// A pose with the height and the slopes that the ground gives it, along its heading and to its right.
+pub(crate) fn on_ground(pose: &Pose, height_m: f64, (rise, fall): (f64, f64)) -> Place {
     let cos_slope = 1.0 / rise.hypot(1.0);
     Place {
         elevation_m: height_m,
         sin_slope: rise * cos_slope,
+        sin_roll: fall * cos_slope / rise.hypot(fall).hypot(1.0),
         heading_rad: pose.heading_rad,
         curvature_per_m: pose.curvature * cos_slope,
         east_m: pose.east_m,

@@ -67,6 +67,7 @@ impl Incline {
         Place {
             elevation_m: up_m * sin_plane,
             sin_slope: sin_plane * (pose.heading_rad - self.uphill_rad).cos(),
+            sin_roll: sin_plane * (pose.heading_rad - self.uphill_rad).sin(),
             east_m: pose.east_m + shortened_m * sin,
             north_m: pose.north_m + shortened_m * cos,
             ..flat
@@ -234,6 +235,22 @@ mod tests {
         assert!((rise / step - one.sin_slope).abs() < 1e-4);
         let moved = (two.east_m - one.east_m).hypot(two.north_m - one.north_m).hypot(rise);
         assert!((moved / step - 1.0).abs() < 1e-6, "{moved}");
+    }
+
+    /// Northward along a slope that rises to the east the left side is lower; aslant, the parts along and across make the slope.
+    #[test]
+    fn a_path_along_a_slope_leans_away_from_where_it_rises() {
+        let plane = Incline { grade: 0.75, uphill_rad: FRAC_PI_2 };
+        let lean = |heading: f64| {
+            let place = plane.place(&PlanePath::heading(heading).at(5.0));
+            (place.sin_slope, place.sin_roll)
+        };
+        for (heading, along, across) in [(0.0, 0.0, -0.6), (PI, 0.0, 0.6), (FRAC_PI_2, 0.6, 0.0)] {
+            let found = lean(heading);
+            assert!((found.0 - along).abs() < 1e-12 && (found.1 - across).abs() < 1e-12, "{found:?}");
+        }
+        let (along, across) = lean(0.3);
+        assert!((along.hypot(across) - 0.6).abs() < 1e-12);
     }
 
     #[test]

@@ -99,6 +99,7 @@ impl Terrain for Profile {
             elevation_m: point.value,
             sin_slope: point.slope,
             heading_rad: self.heading_rad,
+            sin_roll: 0.0,
             curvature_per_m: 0.0,
             east_m: point.horizontal * sin,
             north_m: point.horizontal * cos,

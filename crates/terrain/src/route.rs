@@ -157,6 +157,7 @@ impl Terrain for Route {
         Place {
             elevation_m: height.value,
             sin_slope: height.slope,
+            sin_roll: 0.0,
             heading_rad: pose.heading_rad,
             curvature_per_m: pose.curvature,
             east_m: pose.east_m,

@@ -20,6 +20,7 @@ pub const KNOWN: &[Known] = &[
     known("speed_m_s", "speed over ground along the path"),
     known("acceleration_m_s2", "dv/dt, gravity not included"),
     known("specific_force_m_s2", "forward accelerometer, gravity included"),
+    known("vertical_acceleration_m_s2", "upward, gravity not included"),
     known("wheel_speed_m_s", "rolling radius times wheel speed"),
     known("heading_rad", "direction of travel, clockwise from north"),
     known("yaw_rate_rad_s", "rate of turn, clockwise"),

@@ -120,6 +120,7 @@ impl Carriage for Rig<'_> {
         self.track.follow(self.foot());
         let after_m_s = self.state.speed_m_s();
         self.acceleration_m_s2 = Some((after_m_s - speed_m_s) / step_s);
+        self.rising_m_s2 = (self.state.velocity.z - before.velocity.z) / step_s;
         self.resting = if self.resting {
             let held = self.spin.wheels_m_s.iter().all(|speed| *speed == 0.0);
             after_m_s.abs() <= if held { SLIDES_M_S } else { SETS_OFF_M_S }
@@ -154,8 +155,15 @@ impl Carriage for Rig<'_> {
     }
 
     fn channels(&self) -> Vec<String> {
-        let whole =
-            ["roll_rad", "pitch_rad", "yaw_rate_rad_s", "side_speed_m_s", "path_offset_m", "height_m"];
+        let whole = [
+            "roll_rad",
+            "pitch_rad",
+            "yaw_rate_rad_s",
+            "side_speed_m_s",
+            "path_offset_m",
+            "height_m",
+            RISING,
+        ];
         let mut names: Vec<String> = whole.map(str::to_owned).into();
         if self.towed.is_some() {
             names.extend(TOWED_CHANNELS.map(str::to_owned));
@@ -179,6 +187,7 @@ impl Carriage for Rig<'_> {
             velocity.dot(left),
             self.track.left_m,
             centre.z,
+            self.rising_m_s2,
         ]);
         if let Some(towed) = &self.towed {
             let (ahead, left, up) = (towed.state.ahead(), towed.state.left(), towed.state.up());
@@ -224,6 +233,9 @@ impl Rig<'_> {
         hop::taken_back(&self.wheels, bearer, (free, turning), step_s)
     }
 }
+
+/// How the centre of gravity is accelerated upward.
+const RISING: &str = "vertical_acceleration_m_s2";
 
 /// What is written of a trailer.
 const TOWED_CHANNELS: [&str; 9] = [

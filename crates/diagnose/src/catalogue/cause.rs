@@ -263,6 +263,11 @@ impl Cause {
             "cornering_drag" => {
                 format!("cornering_drag(cornering_stiffness_n_per_rad: {:?})", 1.0 / values[0].max(1e-12))
             }
+            "side_slope" => format!(
+                "side_slope(cornering_stiffness_n_per_rad: {:?}, slip_coefficient: {:?})",
+                1.0 / values[0].max(1e-12),
+                values[1]
+            ),
             "load_dependence" => format!(
                 "load_dependence(coefficient: {:?}, exponent: {:?}, reference_mass_kg: {:?})",
                 values[1],

@@ -170,6 +170,25 @@ fn by_run(around: &Around, pull: Term) -> [Cause; 4] {
     ]
 }
 
+/// What holds a vehicle on a side slope.
+fn side_slope(weight_n: f64) -> Cause {
+    /// Side force per slip angle, over the load: 3 for a soft tyre on soft soil, 6 for one of a tractor on firm ground, 15 for a
+    /// car's. Softer by far is no tyre: what leans by its own turns would pass for a slope.
+    const SOFT_PER_RAD: f64 = 3.0;
+    cause(
+        "side_slope",
+        &[Kind::Motion, Kind::Slip, Kind::Battery, Kind::Fuel],
+        vec![
+            positive("compliance_rad_n", "rad/N", 1.0 / (SOFT_PER_RAD * weight_n)),
+            positive("slip_coefficient", "1", 0.5),
+        ],
+        "F = S (S − 2 m v² κ) / C_α, S = m g sin φ; s = k F_drive tan² φ / N",
+        &["roll_rad", "speed_m_s"],
+        "a side slope that the tyres hold by slip angles",
+        "drive the same lane on level ground, and along the slope both ways",
+    )
+}
+
 /// So many of some speeds, in all ways to choose them.
 fn chosen(speeds: &[f64], count: usize) -> Vec<Vec<f64>> {
     match count {
@@ -449,6 +468,20 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             &["speed_m_s", "curvature_per_m"],
             "drag of the tyres in curves",
             "drive circles of two radii, both ways",
+        ));
+    }
+    if has("roll_rad") {
+        all.push(side_slope(weight));
+    }
+    if has("vertical_acceleration_m_s2") {
+        all.push(cause(
+            "roughness",
+            MOTION,
+            vec![positive("time_constant_s", "s", 0.03)],
+            "F = m τ ⟨a²⟩ / v",
+            &["vertical_acceleration_m_s2", "speed_m_s"],
+            "rough ground that shakes the vehicle",
+            "drive a smooth lane of the same soil beside it, and the rough one at two speeds",
         ));
     }
     if around.masses_kg.1 > 1.02 * around.masses_kg.0 && around.soil_coefficient > 0.0 {

@@ -72,16 +72,19 @@ pub fn drafted(
     let along = source.is_some() && !course.opposite;
     for name in CIRCUMSTANCES {
         let Some(values) = base.measured.trace.get(name) else { continue };
-        let by_place = matches!(*name, "heading_rad" | "curvature_per_m" | "grade");
+        let by_place = matches!(
+            *name,
+            "heading_rad" | "curvature_per_m" | "grade" | "roll_rad" | "vertical_acceleration_m_s2"
+        );
         let flip = |value: f64| match *name {
             _ if !course.opposite => value,
             "heading_rad" => (value + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU),
-            "curvature_per_m" | "grade" => -value,
+            "curvature_per_m" | "grade" | "roll_rad" => -value,
             _ => value,
         };
         let at = |index: usize| match (*name, &source) {
             ("wind_speed_m_s", _) if course.without == Without::Wind => 0.0,
-            ("grade", _) if course.without == Without::Ground => 0.0,
+            ("grade" | "roll_rad", _) if course.without == Without::Ground => 0.0,
             ("coasting", None) => f64::from(u8::from(matches!(course.motion, Motion::Coast { .. }))),
             ("brake", None) => 0.0,
             (_, Some(source)) if along || !by_place => values[source[index]],
@@ -158,6 +161,8 @@ fn known(case: &Case, base: &Recorded, ballast_kg: f64) -> Option<Vec<(String, f
 const CIRCUMSTANCES: &[&str] = &[
     "heading_rad",
     "curvature_per_m",
+    "roll_rad",
+    "vertical_acceleration_m_s2",
     "grade",
     "coasting",
     "brake",

@@ -275,26 +275,34 @@ fn parameters(cured: &Cured) -> Vec<ParameterReport> {
             let Some((value, ci)) = cured.values.first() else { return Vec::new() };
             vec![one("scale", 1.0 + value, [1.0 + ci[0], 1.0 + ci[1]], "1")]
         }
-        "cornering_drag" => {
-            let Some((value, ci)) = cured.values.first() else { return Vec::new() };
+        "cornering_drag" | "side_slope" => {
             let stiffness = |compliance: f64| 1.0 / compliance.max(1e-12);
-            vec![one(
-                "cornering_stiffness_n_per_rad",
-                stiffness(*value),
-                [stiffness(ci[1]), stiffness(ci[0].max(1e-9))],
-                "N/rad",
-            )]
+            let terms = cured.cause.terms.iter().zip(&cured.values).filter(|(_, value)| estimated(value));
+            let told = terms.map(|(term, (value, ci))| match term.name {
+                "compliance_rad_n" => one(
+                    "cornering_stiffness_n_per_rad",
+                    stiffness(*value),
+                    [stiffness(ci[1]), stiffness(ci[0].max(1e-9))],
+                    "N/rad",
+                ),
+                name => one(name, *value, *ci, term.unit),
+            });
+            told.collect()
         }
         _ => cured
             .cause
             .terms
             .iter()
             .zip(&cured.values)
-            // A term that was not needed is zero, and nothing was estimated.
-            .filter(|(_, (value, ci))| !(*value == 0.0 && *ci == [0.0; 2]))
+            .filter(|(_, value)| estimated(value))
             .map(|(term, (value, ci))| one(term.name, *value, *ci, term.unit))
             .collect(),
     }
+}
+
+/// Whether a term was needed: one that was not is zero, and nothing was estimated.
+fn estimated((value, ci): &(f64, [f64; 2])) -> bool {
+    !(*value == 0.0 && *ci == [0.0; 2])
 }
 
 /// The interval that holds a direction and its image, each with its own: without a step over north, beyond which the same

@@ -227,6 +227,19 @@ impl Spin {
         turned
     }
 
+    /// Lets every wheel turn again as it did before a step.
+    pub fn put_back(&mut self, wheels_m_s: Vec<f64>) {
+        for shaft in &mut self.shafts {
+            // What a differential adds on one side it takes on the other.
+            let sum_m_s: f64 = shaft.wheels.iter().map(|(wheel, lead)| wheels_m_s[*wheel] / lead).sum();
+            shaft.speed_m_s = sum_m_s / shaft.wheels.len() as f64;
+        }
+        for one in &mut self.differences {
+            one.speed_m_s = 0.5 * (wheels_m_s[one.left] - wheels_m_s[one.right]);
+        }
+        self.wheels_m_s = wheels_m_s;
+    }
+
     /// Inertia and wheels of each shaft, the lightest that a wheel may turn with [kg].
     pub fn shafts(&self) -> impl Iterator<Item = (f64, &[(usize, f64)])> {
         self.shafts.iter().map(|shaft| (shaft.mass_kg, shaft.wheels.as_slice()))

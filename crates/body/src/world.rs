@@ -101,10 +101,13 @@ impl World {
         physics.gravity = Vector::new(0.0, 0.0, -gravity_m_s2);
         // Nothing touches and no joint holds: one pass is Euler's half-implicit rule, and more would change nothing else.
         physics.integration_parameters.num_solver_iterations = 1;
+        // Rapier would hold bodies to 400 m/s and an eighth of a turn in a step, and stand still those whose speed has no square.
+        physics.integration_parameters.normalized_max_linear_velocity = f64::MAX;
         let body: RigidBody = RigidBodyBuilder::dynamic()
             .pose(pose)
             .linvel(velocity)
             .additional_mass_properties(properties)
+            .allow_fast_rotation(true)
             .can_sleep(false)
             .build();
         let body = physics.insert_body(body);
@@ -130,6 +133,7 @@ impl World {
             .pose(pose)
             .linvel(velocity)
             .additional_mass_properties(properties)
+            .allow_fast_rotation(true)
             .can_sleep(false)
             .build();
         let trailer = self.physics.insert_body(trailer);
@@ -170,6 +174,22 @@ impl World {
         body.reset_torques(true);
         body.add_force(force, true);
         body.add_torque(moment, true);
+    }
+
+    /// Whether the last step left motions, and an energy, that are numbers. Rapier stands still what has no finite motion, and tells
+    /// in its quarantine alone.
+    pub fn is_finite(&self) -> bool {
+        self.physics.quarantine().is_empty() && self.kinetic_j().is_finite()
+    }
+
+    /// Puts the vehicle, and its trailer, back to how they moved.
+    pub fn put_back(&mut self, own: &State, towed: Option<&State>) {
+        for (body, state) in std::iter::once(self.body).zip([own]).chain(self.towed.into_iter().zip(towed)) {
+            let body = &mut self.physics.bodies[body];
+            body.set_position(state.pose, true);
+            body.set_linvel(state.velocity, true);
+            body.set_angvel(state.turning, true);
+        }
     }
 
     /// One step under a force in the centre of gravity [N] and a moment about it [N m], and the same of the trailer.

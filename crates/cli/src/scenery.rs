@@ -2,11 +2,11 @@
 
 use crate::failure::Failure;
 use headland_body::{BodyError, Hub, hubs, trailer_hubs};
-use headland_plugin::{Place, Registry, Surface};
+use headland_plugin::{Place, Registry, Surface, Task};
 use headland_scenario::{Fidelity, RunSpec, Scenario};
-use headland_sim::Model;
+use headland_sim::{Model, Named};
 use headland_trace::Run;
-use headland_view::{Body, Relief, Rig, RigWheel, Setting, Towed};
+use headland_view::{Body, Implement, Relief, Rig, RigWheel, Setting, Towed};
 
 /// One run and what it was driven with.
 #[derive(Debug)]
@@ -15,6 +15,7 @@ pub struct Stage {
     /// Its wheels, where it is a rigid body.
     pub rig: Option<Rig>,
     trailer: Option<Towed>,
+    implements: Vec<Implement>,
     model: Model,
 }
 
@@ -37,7 +38,8 @@ impl Stage {
     /// As the picture takes it.
     pub fn setting(&self) -> Setting<'_> {
         let relief = self.surface().map(|_| self as &dyn Relief);
-        Setting { run: &self.run, rig: self.rig.clone(), trailer: self.trailer.clone(), relief }
+        let (rig, trailer, implements) = (self.rig.clone(), self.trailer.clone(), self.implements.clone());
+        Setting { run: &self.run, rig, trailer, implements, relief }
     }
 }
 
@@ -54,8 +56,8 @@ pub fn stages(scenario: &Scenario, registry: &Registry, runs: &[Run]) -> Result<
 /// What a run was driven with that a scenario describes alone.
 pub fn stage(run: &str, scenario: &Scenario, registry: &Registry) -> Result<Stage, Failure> {
     let model = scenario.model(registry)?;
-    let (rig, trailer) = match &scenario.fidelity {
-        Fidelity::Longitudinal | Fidelity::QuasiStatic { .. } => (None, None),
+    let (rig, trailer, implements) = match &scenario.fidelity {
+        Fidelity::Longitudinal | Fidelity::QuasiStatic { .. } => (None, None, Vec::new()),
         Fidelity::RigidBody { chassis, .. } => {
             let failed = |error: BodyError| Failure::Machine(error.to_string());
             let wheels = hubs(&model, chassis).map_err(failed)?.into_iter().map(wheel).collect();
@@ -67,10 +69,21 @@ pub fn stage(run: &str, scenario: &Scenario, registry: &Registry) -> Result<Stag
                 },
                 coupling_m: trailer.coupling_m,
             });
-            (Some(Rig { centre_height_m, wheels }), trailer)
+            let height_m = model.axles.as_ref().map_or(0.0, |axles| axles.hitch_height_m);
+            let implements = implements(&model, [chassis.hitch_position_m, height_m]);
+            (Some(Rig { centre_height_m, wheels }), trailer, implements)
         }
     };
-    Ok(Stage { run: run.to_owned(), rig, trailer, model })
+    Ok(Stage { run: run.to_owned(), rig, trailer, implements, model })
+}
+
+/// What the tasks hang on a hitch.
+fn implements(model: &Model, hitch_m: [f64; 2]) -> Vec<Implement> {
+    let hung = |task: &Named<dyn Task>| {
+        let headland_plugin::Implement { width_m, depth_m, tools, lift_m } = task.plugin.implement()?;
+        Some(Implement { name: task.name.clone(), hitch_m, width_m, depth_m, tools, lift_m })
+    };
+    model.tasks.iter().filter_map(hung).collect()
 }
 
 fn wheel(hub: Hub) -> RigWheel {

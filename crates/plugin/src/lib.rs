@@ -31,7 +31,7 @@ pub use situation::{Air, Situation};
 pub use soil::{Contact, Footing, Soil, WheelContact};
 pub use state::State;
 pub use surface::{Bounds, Spot, Surface};
-pub use task::{Load, Mode, Task};
+pub use task::{Implement, Load, Mode, Task};
 pub use terrain::{Place, Terrain};
 pub use tyre::Tyre;
 

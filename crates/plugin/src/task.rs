@@ -36,9 +36,23 @@ pub enum Mode {
     Empty,
 }
 
+/// What of a task hangs on the hitch and works there, as pictures show it; nothing else asks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Implement {
+    /// Working width [m].
+    pub width_m: f64,
+    /// How deep its tools work [m], 0 where they touch the ground and nothing says more; `None` where it has none in the ground.
+    pub depth_m: Option<f64>,
+    /// Number of its tools, where that is known.
+    pub tools: Option<f64>,
+    /// How high it is lifted [m]; `None` where nothing says so.
+    pub lift_m: Option<f64>,
+}
+
 /// Ploughing, seeding, spreading, hauling.
 pub trait Task: Debug + Send + Sync {
-    /// What it remembers. A state named `payload_kg` is what it carries, one named `area_m2` what it has worked.
+    /// What it remembers. A state named `payload_kg` is what it carries, one named `area_m2` what it has worked, and one named
+    /// `lifted` how far it is lifted, from 0 at work to 1.
     fn states(&self) -> Vec<State> {
         Vec::new()
     }
@@ -55,6 +69,11 @@ pub trait Task: Debug + Send + Sync {
         }
         rates.fill(0.0);
         Load::default()
+    }
+
+    /// What hangs on the hitch; it works where `lifted` is 0 or, without that state, where `area_m2` grows.
+    fn implement(&self) -> Option<Implement> {
+        None
     }
 
     /// Why it cannot do what it is told, as spreading from an empty tank: the run ends. Asked once a step.

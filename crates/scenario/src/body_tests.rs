@@ -1,6 +1,7 @@
 //! Tests of the rigid body of a scenario.
 
 use crate::{Fidelity, Scenario};
+use headland_sim::End;
 use std::path::Path;
 
 const GOOD: &str = r#"(
@@ -59,6 +60,20 @@ fn one_word_changes_the_fidelity_and_nothing_else_does() {
         *outcome.trace.get("position_m").unwrap().last().unwrap()
     };
     assert!((way(&rigid) / way(&flat) - 1.0).abs() < 2e-3, "{} {}", way(&rigid), way(&flat));
+}
+
+/// A pull without measure was done in one step and told as a vehicle that had rolled out; backward it is no pull.
+#[test]
+fn a_pull_without_measure_ends_the_run_at_its_start_and_is_told() {
+    let pull = |force_n: f64| format!("tasks: [Drawbar(force_n: {force_n:e})],\n    start:");
+    let scenario = of(&GOOD.replace("start:", &pull(f64::MAX)));
+    let model = scenario.model(&headland_stock::registry()).unwrap();
+    let outcome = scenario.fidelity.simulate(&model, scenario.cycle.as_ref().unwrap()).unwrap();
+    let End::Stopped { reason, time_s, position_m } = outcome.end else { panic!("{:?}", outcome.end) };
+    assert!(reason.contains("under 1.8e308 N the motion is no finite number"), "{reason}");
+    assert_eq!((time_s, position_m, outcome.trace.get("speed_m_s").unwrap()), (0.0, 0.0, &[5.0][..]));
+    let backward = told("start:", &pull(-f64::MAX));
+    assert!(backward.contains("`force_n` is -1797") && backward.contains("expected 0 or more"), "{backward}");
 }
 
 #[test]

@@ -87,14 +87,18 @@ impl<'a> Machine<'a> {
     }
 
     /// As [`Machine::step`], by the carriage. What ends a phase is foreseen from speed and acceleration, so a step ends
-    /// there to within the change of acceleration along it.
+    /// there to within the change of acceleration along it. Where the carriage makes no step, none is taken.
     #[inline(never)]
     pub(crate) fn borne_step(&mut self, step_s: f64, event: &dyn Fn(&Moment) -> f64) -> f64 {
         let Some(mut carriage) = self.carriage.take() else {
             unreachable!("it is asked of machines on a carriage")
         };
         let taken = self.foreseen(step_s, carriage.motion().acceleration_m_s2.unwrap_or(0.0), event);
-        let stepped = carriage.advance(&self.borne.push, taken);
+        let Some(stepped) = carriage.advance(&self.borne.push, taken) else {
+            self.steps -= 1;
+            self.carriage = Some(carriage);
+            return 0.0;
+        };
         for (value, rate) in self.y.iter_mut().zip(&self.slopes[0]).skip(FIRST_STATE) {
             *value += taken * rate;
         }

@@ -105,8 +105,8 @@ pub trait Carriage: Debug {
     /// What an axle does, by its index.
     fn axle(&self, index: usize) -> AxleMotion;
 
-    /// Makes a step.
-    fn advance(&mut self, push: &Push, step_s: f64) -> Stepped;
+    /// Makes a step; `None` where there is none to be made. Then it stands as it stood, and [`Carriage::trouble`] says why.
+    fn advance(&mut self, push: &Push, step_s: f64) -> Option<Stepped>;
 
     /// Why it cannot go on.
     fn trouble(&self) -> Option<String>;

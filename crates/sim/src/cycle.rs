@@ -221,7 +221,11 @@ impl<'a> Running<'a> {
         if step_s == left_s && machine.time_s < end_s && end_s - machine.time_s < 1e-9 {
             machine.time_s = end_s;
         }
-        self.within_the_path().map(|()| None)
+        match self.within_the_path() {
+            // What a carriage comes to is foreseen, and may be passed by a little.
+            Err(told) if ending.left(&self.machine.moment()) > 0.0 => Err(told),
+            _ => Ok(None),
+        }
     }
 
     pub(crate) fn within_the_path(&self) -> Result<(), String> {

@@ -6,7 +6,7 @@
 //! Source: definition of the rolling coefficient; the drag equation in its vector form.
 //! Its wheels see one coefficient on every ground; what it carries is spread as the machine itself is.
 
-use headland_plugin::{Load, Refusal, Situation};
+use headland_plugin::{Implement, Load, Refusal, Situation};
 use serde::Deserialize;
 
 /// A machine on its own wheels, or on those of the vehicle.
@@ -68,6 +68,12 @@ impl Carriage {
 /// What carrying a payload takes: on a machine that comes along, or else on the vehicle itself.
 pub(crate) fn load(carriage: Option<&Carriage>, at: &Situation, payload_kg: f64) -> Load {
     carriage.map_or(Load { mass_kg: payload_kg, ..Load::default() }, |carriage| carriage.load(at, payload_kg))
+}
+
+/// A machine that hangs on the hitch and passes over the ground; `None` where it rolls on wheels of its own.
+pub(crate) fn mounted(carriage: Option<&Carriage>, width_m: f64) -> Option<Implement> {
+    let hangs = carriage.is_none_or(|carriage| carriage.carried_share == 1.0);
+    hangs.then_some(Implement { width_m, depth_m: None, tools: None, lift_m: None })
 }
 
 #[cfg(test)]

@@ -13,7 +13,9 @@
 use crate::carriage::{self, Carriage};
 use crate::payload;
 use crate::power_table::{Row, choose};
-use headland_plugin::{Bound, Card, Load, Mode, Plugin, Refusal, Situation, State, Task, parameter};
+use headland_plugin::{
+    Bound, Card, Implement, Load, Mode, Plugin, Refusal, Situation, State, Task, parameter,
+};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -150,6 +152,10 @@ impl Task for Harvester {
             Mode::Rest | Mode::Fill => {}
         }
         load
+    }
+
+    fn implement(&self) -> Option<Implement> {
+        carriage::mounted(self.carriage.as_ref(), self.width_m)
     }
 
     fn trouble(&self, mode: Mode, at: &Situation, states: &[f64]) -> Option<String> {

@@ -54,6 +54,11 @@ impl Hitch {
         Ok(())
     }
 
+    /// How high it lifts [m].
+    pub fn lift_m(&self) -> f64 {
+        self.height_m
+    }
+
     /// How fast it moves from where it is [1/s].
     pub fn rate(&self, mode: Mode, lifted: f64) -> f64 {
         let target = if mode == Mode::Work { 0.0 } else { 1.0 };

@@ -6,9 +6,11 @@
 //! a default to be overridden by what was measured.
 //! The standard's own spread is ±25 to ±50 %. A machine that idles takes a + b W. Leaves out starting and what blocks.
 
-use crate::carriage::Carriage;
+use crate::carriage::{self, Carriage};
 use crate::power_table::{Row, choose};
-use headland_plugin::{Bound, Card, Load, Mode, Plugin, Refusal, Situation, State, Task, parameter};
+use headland_plugin::{
+    Bound, Card, Implement, Load, Mode, Plugin, Refusal, Situation, State, Task, parameter,
+};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -90,6 +92,10 @@ impl Task for Rotary {
         }
         load
     }
+
+    fn implement(&self) -> Option<Implement> {
+        carriage::mounted(self.carriage.as_ref(), self.width_m)
+    }
 }
 
 #[cfg(test)]
@@ -115,6 +121,21 @@ mod tests {
         assert_eq!((power(Mode::Work, &mut rates), rates[0]), (72_000.0, 36.0));
         assert_eq!((power(Mode::Idle, &mut rates), rates[0]), (72_000.0, 0.0));
         assert_eq!(power(Mode::Rest, &mut rates), 0.0);
+    }
+
+    #[test]
+    fn a_machine_hangs_on_the_hitch_unless_it_rolls_on_wheels_of_its_own() {
+        let mower = "(machine: \"mower-conditioner, disk\", width_m: 9";
+        let carried = |share: f64| {
+            let carriage =
+                format!("(mass_kg: 900, carried_share: {share}, rolling_coefficient: 0.05, drag_area_m2: 0)");
+            build(&format!("{mower}, carriage: {carriage})")).implement()
+        };
+        let hangs = Some(Implement { width_m: 9.0, depth_m: None, tools: None, lift_m: None });
+        assert_eq!(
+            (build(&format!("{mower})")).implement(), carried(1.0), carried(0.3)),
+            (hangs, hangs, None)
+        );
     }
 
     /// 2 kg/m² · 6 m · 2.5 m/s = 30 kg/s = 108 t/h: 10 + 0.5 · 6 + 0.25 · 108 = 40 kW.

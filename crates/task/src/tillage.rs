@@ -11,7 +11,9 @@
 use crate::draft_table::{Per, find};
 use crate::fluctuation::Fluctuation;
 use crate::hitch::Hitch;
-use headland_plugin::{Bound, Card, Load, Mode, Plugin, Refusal, Situation, State, Task, parameter};
+use headland_plugin::{
+    Bound, Card, Implement, Load, Mode, Plugin, Refusal, Situation, State, Task, parameter,
+};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -207,6 +209,13 @@ impl Task for Tillage {
             load.drawbar_force_n = (a + b * s + c * s * s) * depth_share * factor;
         }
         load
+    }
+
+    fn implement(&self) -> Option<Implement> {
+        // A drill's draft does not count its depth.
+        let depth_m = Some(self.depth_m.unwrap_or(0.0));
+        let lift_m = self.hitch.as_ref().map(Hitch::lift_m);
+        Some(Implement { width_m: self.width_m, depth_m, tools: self.tools, lift_m })
     }
 }
 

@@ -19,6 +19,15 @@ fn draft_n(text: &str, speed_km_h: f64) -> f64 {
 
 const PLOUGH: &str = "(implement: \"moldboard plough\", texture: Fine, width_m: 0.3, depth_m: 0.15)";
 
+/// The same on a hitch.
+fn hitched() -> String {
+    PLOUGH.replace(
+        "depth_m: 0.15",
+        "depth_m: 0.15, hitch: (mass_kg: 1800, height_m: 0.8, time_s: 3, efficiency: 0.75, working_share: 0.2, \
+         lifted_share: 1)",
+    )
+}
+
 /// (652 + 5.1 · 2.5²) · 0.3 · 15 = 683.875 · 4.5 N.
 #[test]
 fn a_moldboard_plough_of_30_cm_by_hand() {
@@ -48,12 +57,7 @@ fn a_drill_counts_rows_and_neither_speed_nor_depth() {
 
 #[test]
 fn draft_and_area_follow_the_hitch() {
-    let hitched = PLOUGH.replace(
-        "depth_m: 0.15",
-        "depth_m: 0.15, hitch: (mass_kg: 1800, height_m: 0.8, time_s: 3, efficiency: 0.75, working_share: 0.2, \
-         lifted_share: 1)",
-    );
-    let task = build(&hitched).unwrap();
+    let task = build(&hitched()).unwrap();
     assert_eq!(task.states()[LIFTED].initial, 1.0);
     let mut rates = [0.0; 2];
     let half = task.load_in(Mode::Rest, &at_km_h(2.5), &[0.0, 0.5], &mut rates);
@@ -63,6 +67,17 @@ fn draft_and_area_follow_the_hitch() {
     let up = task.load_in(Mode::Rest, &at_km_h(2.5), &[0.0, 1.0], &mut rates);
     assert_eq!(up, Load { mass_kg: 1800.0, ..Load::default() });
     assert_eq!(rates, [0.0, 0.0]);
+}
+
+/// Width, depth and way of the hitch as the scenario says them; coulters, whose depth nothing says, on top of the ground.
+#[test]
+fn its_tools_hang_on_the_hitch_as_deep_as_they_work() {
+    let hangs = |text: &str| build(text).unwrap().implement().unwrap();
+    let plough = Implement { width_m: 0.3, depth_m: Some(0.15), tools: None, lift_m: None };
+    assert_eq!(hangs(PLOUGH), plough);
+    assert_eq!(hangs(&hitched()), Implement { lift_m: Some(0.8), ..plough });
+    let drill = hangs("(implement: \"grain drill\", texture: Fine, width_m: 3, tools: 24)");
+    assert_eq!(drill, Implement { width_m: 3.0, depth_m: Some(0.0), tools: Some(24.0), lift_m: None });
 }
 
 #[test]

@@ -91,8 +91,10 @@ impl Scenic<'_> {
         };
         let (sine, cosine) = main_heading_rad(&first.path.poses, pose.heading_rad).sin_cos();
         let reach = scene.vehicle.length_m.max(scene.vehicle.height_m);
-        // Ahead and to the right of the vehicle, in its own lengths.
-        let (ahead, right, up) = (0.5 * reach, 2.2 * reach, 1.0 * reach);
+        // Ahead and to the right of the vehicle, in its own lengths; behind it where something hangs there.
+        let hangs = scene.setting(&first.run.id).is_some_and(|setting| setting.hangs(-1.0));
+        let (ahead, right) = if hangs { (-1.2, 1.9) } else { (0.5, 2.2) };
+        let (ahead, right, up) = (ahead * reach, right * reach, reach);
         let eye = [
             pose.at[0] + ahead * sine + right * cosine,
             pose.at[1] + ahead * cosine - right * sine,

@@ -5,8 +5,8 @@ use crate::lanes::{Lane, lanes};
 use crate::recorder::{Recorder, encode};
 use crate::summary::Scales;
 use crate::{
-    Scene, ViewError, balance, blueprint, flow, forces, groups, plots, ruts, summary, surroundings, trailer,
-    vehicle, wheels,
+    Scene, ViewError, balance, blueprint, flow, forces, groups, implement, plots, ruts, summary,
+    surroundings, trailer, vehicle, wheels,
 };
 use rerun::external::re_build_info::CrateVersion;
 use rerun::external::re_log_encoding::Encoder;
@@ -89,6 +89,9 @@ pub(crate) fn messages(scene: &Scene) -> Result<Vec<LogMsg>, ViewError> {
             let base = entity::vehicle(&run.id, Who::Modelled);
             if let Some(newton_per_m) = scales.wheels_newton_per_m {
                 wheels::draw_forces(&to, &base, run, path, rig, newton_per_m)?;
+            }
+            for implement in scene.setting(&run.id).iter().flat_map(|setting| &setting.implements) {
+                implement::draw(&to, &base, lane, rig, implement)?;
             }
         }
         if let Some(measured) = measured {

@@ -15,6 +15,8 @@ use rerun::{Arrows3D, Color, Transform3D};
 const LONGEST: f64 = 1.2;
 /// A force below this share of the largest one is drawn without an arrow.
 const LEAST: f64 = 0.002;
+/// Above what hangs on a hitch, in heights of the vehicle.
+const ABOVE: f64 = 0.5;
 /// A smaller force is told as 0 N.
 const LEAST_TOLD_N: f64 = 0.5;
 
@@ -40,17 +42,23 @@ pub(crate) fn words(force_n: f64) -> String {
     }
 }
 
-/// Where the arrow of the `index`-th of `count` forces begins, and its vector; it always points away from the vehicle
-/// or ends at its roof.
-fn arrow(body: &Body, axis: Axis, (index, count): (usize, usize), length_m: f64) -> (Point, Point) {
+/// Where the arrow of the `index`-th of `count` forces begins, and its vector; it always points away from the vehicle or
+/// ends at its roof. Where something hangs before or behind the vehicle it begins above that.
+fn arrow(
+    (body, hangs): (&Body, [bool; 2]),
+    axis: Axis,
+    (index, count): (usize, usize),
+    length_m: f64,
+) -> (Point, Point) {
     let vector = axis.vector(length_m);
     let share = (index as f64 + 0.5) / count as f64;
     let origin = match axis {
         Axis::Up => [0.0, 0.0, body.height_m - vector[2].min(0.0)],
         Axis::Forward | Axis::Backward => {
             let ahead = (axis == Axis::Forward) == (length_m >= 0.0);
-            let end = if ahead { 0.5 } else { -0.5 };
-            [end * body.length_m, 0.0, body.height_m * (0.05 + 1.05 * share)]
+            let (end, hangs) = if ahead { (0.5, hangs[0]) } else { (-0.5, hangs[1]) };
+            let lowest = if hangs { ABOVE } else { 0.05 };
+            [end * body.length_m, 0.0, body.height_m * (lowest + 1.05 * share)]
         }
     };
     (origin, vector)
@@ -81,6 +89,7 @@ pub(crate) fn draw(
         let seat = Transform3D::from_translation(single(rig.seat_m(body.wheel_radius_m)));
         to.fixed(&part(&vehicle(&run.id, Who::Modelled), "forces"), &seat)?;
     }
+    let hangs = [1.0, -1.0].map(|way| scene.setting(&run.id).is_some_and(|setting| setting.hangs(way)));
     let mut rank = 0;
     for ForceArrow { channel, label, axis } in scene.forces {
         let place = (rank, level.max(1));
@@ -93,7 +102,7 @@ pub(crate) fn draw(
             .map(|force| {
                 let length_m = force / newton_per_m;
                 let drawn = length_m.abs() >= LEAST * LONGEST * body.length_m;
-                arrow(body, *axis, place, if drawn { length_m } else { 0.0 })
+                arrow((body, hangs), *axis, place, if drawn { length_m } else { 0.0 })
             })
             .collect();
         let at = part(&part(&vehicle(&run.id, Who::Modelled), "forces"), channel);
@@ -137,17 +146,19 @@ mod tests {
 
     #[test]
     fn arrows_point_away_from_the_vehicle_on_both_sides() {
-        let (nose, ahead) = arrow(&BODY, Axis::Forward, (0, 1), 2.0);
+        let (nose, ahead) = arrow((&BODY, [false; 2]), Axis::Forward, (0, 1), 2.0);
         assert_eq!((nose[0], ahead), (3.0, [2.0, 0.0, 0.0]));
-        let (tail, back) = arrow(&BODY, Axis::Backward, (0, 1), 2.0);
+        let (tail, back) = arrow((&BODY, [false; 2]), Axis::Backward, (0, 1), 2.0);
         assert_eq!((tail[0], back), (-3.0, [-2.0, 0.0, 0.0]));
-        let (turned, ahead) = arrow(&BODY, Axis::Backward, (0, 1), -2.0);
+        let (turned, ahead) = arrow((&BODY, [false; 2]), Axis::Backward, (0, 1), -2.0);
         assert_eq!((turned[0], ahead), (3.0, [2.0, 0.0, 0.0]));
-        let (still, _) = arrow(&BODY, Axis::Backward, (0, 1), 0.0);
+        let (above_it, _) = arrow((&BODY, [false, true]), Axis::Backward, (0, 1), 2.0);
+        assert!((above_it[2] - tail[2] - 0.45 * BODY.height_m).abs() < 1e-12 && above_it[0] == tail[0]);
+        let (still, _) = arrow((&BODY, [false; 2]), Axis::Backward, (0, 1), 0.0);
         assert_eq!(still[0], -3.0, "the label of no force stays where the force would be");
-        let (roof, up) = arrow(&BODY, Axis::Up, (0, 1), 2.0);
+        let (roof, up) = arrow((&BODY, [false; 2]), Axis::Up, (0, 1), 2.0);
         assert_eq!((roof[2], up[2]), (BODY.height_m, 2.0));
-        let (above, down) = arrow(&BODY, Axis::Up, (0, 1), -2.0);
+        let (above, down) = arrow((&BODY, [false; 2]), Axis::Up, (0, 1), -2.0);
         assert_eq!(above[2] + down[2], BODY.height_m);
     }
 

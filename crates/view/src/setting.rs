@@ -61,6 +61,24 @@ pub struct Towed {
     pub coupling_m: [f64; 2],
 }
 
+/// What hangs on the hitch of a rigid body. By its name, the trace has `plough_lifted`, from 0 at work to 1, or `plough_area_m2`,
+/// which grows while it works; without either it is not drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Implement {
+    /// As its channels begin.
+    pub name: String,
+    /// Where it hangs: ahead of the centre of gravity, and above the ground [m].
+    pub hitch_m: [f64; 2],
+    /// Working width [m].
+    pub width_m: f64,
+    /// How deep its tools work [m]; `None` where it has none in the ground.
+    pub depth_m: Option<f64>,
+    /// Number of its tools, where that is known.
+    pub tools: Option<f64>,
+    /// How high it is lifted [m], where that is known.
+    pub lift_m: Option<f64>,
+}
+
 /// What is known of one run.
 #[derive(Clone, Debug)]
 pub struct Setting<'a> {
@@ -70,16 +88,50 @@ pub struct Setting<'a> {
     pub rig: Option<Rig>,
     /// What it tows, where that is a body of its own.
     pub trailer: Option<Towed>,
+    /// What hangs on its hitch, where it is a rigid body.
+    pub implements: Vec<Implement>,
     /// Its ground; where nothing is known of it, the ground of the scene.
     pub relief: Option<&'a dyn Relief>,
 }
 
 impl Setting<'_> {
+    /// Whether something hangs on its hitch, behind it (−1) or before it (1).
+    pub(crate) fn hangs(&self, way: f64) -> bool {
+        self.rig.iter().any(|rig| self.implements.iter().any(|hung| hung.way(rig) == way))
+    }
+
     /// # Errors
     /// [`ViewError::Body`] for measures that cannot be.
     pub(crate) fn check(&self) -> Result<(), ViewError> {
         let towed = self.trailer.as_ref().map(|trailer| &trailer.rig);
-        self.rig.iter().chain(towed).try_for_each(Rig::check)
+        self.rig.iter().chain(towed).try_for_each(Rig::check)?;
+        self.implements.iter().try_for_each(Implement::check)
+    }
+}
+
+impl Implement {
+    /// −1 behind a vehicle on such wheels, 1 before it.
+    pub(crate) fn way(&self, rig: &Rig) -> f64 {
+        if self.hitch_m[0] < rig.seat_m(0.0)[0] { -1.0 } else { 1.0 }
+    }
+
+    /// # Errors
+    /// [`ViewError::Body`] for measures that cannot be.
+    fn check(&self) -> Result<(), ViewError> {
+        let positive = |found: f64| found > 0.0 && found.is_finite();
+        let there = |found: f64| found >= 0.0 && found.is_finite();
+        let measures = [
+            ("width_m", self.width_m, positive(self.width_m)),
+            ("hitch_m", self.hitch_m[0], self.hitch_m[0].is_finite()),
+            ("hitch_m", self.hitch_m[1], there(self.hitch_m[1])),
+            ("depth_m", self.depth_m.unwrap_or(0.0), there(self.depth_m.unwrap_or(0.0))),
+            ("tools", self.tools.unwrap_or(1.0), positive(self.tools.unwrap_or(1.0))),
+            ("lift_m", self.lift_m.unwrap_or(0.0), there(self.lift_m.unwrap_or(0.0))),
+        ];
+        match measures.into_iter().find(|(_, _, fits)| !fits) {
+            Some((name, found, _)) => Err(ViewError::Body { name, found }),
+            None => Ok(()),
+        }
     }
 }
 

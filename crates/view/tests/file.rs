@@ -1,7 +1,9 @@
 //! What a written file holds, read back with Rerun's own decoder.
 
 use headland_trace::{Origin, Run, Trace};
-use headland_view::{Axis, Body, ForceArrow, Relief, Rig, RigWheel, Scene, Setting, Towed, ViewError, write};
+use headland_view::{
+    Axis, Body, ForceArrow, Implement, Relief, Rig, RigWheel, Scene, Setting, Towed, ViewError, write,
+};
 use rerun::external::re_log_encoding::DecoderApp;
 use rerun::external::re_log_types::StoreKind;
 use rerun::log::{Chunk, LogMsg};
@@ -79,6 +81,17 @@ impl Content {
         let chunks = self.recording[entity].iter();
         chunks
             .flat_map(|chunk| chunk.iter_slices::<f64>(scalars).flatten().copied().collect::<Vec<_>>())
+            .collect()
+    }
+
+    /// The places of what moves.
+    fn places_m(&self, entity: &str) -> Vec<[f32; 3]> {
+        let translations = "Transform3D:translation".into();
+        let chunks = self.recording[entity].iter();
+        chunks
+            .flat_map(|chunk| {
+                chunk.iter_slices::<[f32; 3]>(translations).flatten().copied().collect::<Vec<_>>()
+            })
             .collect()
     }
 }
@@ -229,7 +242,13 @@ fn rigid(id: &str) -> Run {
 
 fn settings(runs: &[Run]) -> Vec<Setting<'_>> {
     runs.iter()
-        .map(|run| Setting { run: &run.id, rig: Some(rig()), trailer: None, relief: Some(&Hill) })
+        .map(|run| Setting {
+            run: &run.id,
+            rig: Some(rig()),
+            trailer: None,
+            implements: Vec::new(),
+            relief: Some(&Hill),
+        })
         .collect()
 }
 
@@ -301,7 +320,8 @@ fn a_trailer_has_a_body_wheels_and_ruts_of_its_own() {
     let wheel = RigWheel { name: "trailer_axle_1_left".to_owned(), ..rig().wheels[0].clone() };
     let towed = Towed { rig: Rig { centre_height_m: 1.4, wheels: vec![wheel] }, coupling_m: [4.0, 0.7] };
     let runs = [towing];
-    let settings = [Setting { run: "r1", rig: Some(rig()), trailer: Some(towed), relief: None }];
+    let settings =
+        [Setting { run: "r1", rig: Some(rig()), trailer: Some(towed), implements: Vec::new(), relief: None }];
     let content = written(&Scene { forces: &[], settings: &settings, ..scene(&runs, &[]) });
     let base = "/world/runs/r1/modelled";
     for what in ["trailer", "trailer/wheels/trailer_axle_1_left", "trailer/wheel_forces/trailer_axle_1_left"]
@@ -312,11 +332,71 @@ fn a_trailer_has_a_body_wheels_and_ruts_of_its_own() {
     assert!(!content.times_s(&format!("{base}/trailer_ruts/00")).is_empty());
 }
 
+fn plough() -> Implement {
+    Implement {
+        name: "plough".to_owned(),
+        hitch_m: [-3.0, 0.7],
+        width_m: 3.0,
+        depth_m: Some(0.25),
+        tools: None,
+        lift_m: Some(0.8),
+    }
+}
+
+/// A run as above that ploughs from 5 s to 15 s.
+fn ploughing(id: &str) -> Run {
+    let mut run = rigid(id);
+    let lifted = |time: &f64| if (5.0..15.0).contains(time) { 0.0 } else { 1.0 };
+    let lifted = run.trace.time_s().iter().map(lifted).collect();
+    run.trace.push("plough_lifted", lifted, Origin::Predicted).unwrap();
+    run
+}
+
+/// The wheels say that the ground lies 0.9 − (0.95 − 0.05 − 0.04) = 0.04 m up in the frame of the vehicle.
+#[test]
+fn an_implement_is_down_on_the_ground_where_it_works_and_up_where_it_is_lifted() {
+    let runs = [ploughing("r1")];
+    let mut settings = settings(&runs);
+    settings[0].implements.push(plough());
+    let content = written(&Scene { forces: &[], settings: &settings, ..scene(&runs, &[]) });
+    let at = "/world/runs/r1/modelled/vehicle/implements/plough";
+    let (times, places) = (content.times_s(&format!("{at}/frame")), content.places_m(&format!("{at}/frame")));
+    assert_eq!((times.len(), places.len()), (401, 401));
+    for (time, place) in times.iter().zip(&places) {
+        let height_m = if (5.0..15.0).contains(time) { 0.04 } else { 0.8 };
+        let off = [place[0] + 3.0, place[1], place[2] - height_m];
+        assert!(off.iter().all(|off| off.abs() < 1e-5), "{time} s: {place:?}");
+    }
+    assert_eq!(content.times_s(&format!("{at}/links")).len(), 401);
+}
+
+#[test]
+fn without_an_implement_none_is_drawn_and_one_that_the_trace_does_not_know_is_not_either() {
+    let runs = [ploughing("r1"), rigid("r2")];
+    let mut settings = settings(&runs);
+    settings[1].implements.push(plough());
+    let content = written(&Scene { forces: &[], settings: &settings, ..scene(&runs, &[]) });
+    assert!(content.recording.keys().all(|entity| !entity.contains("implements")));
+}
+
+#[test]
+fn an_implement_of_no_width_is_refused() {
+    let runs = [ploughing("r1")];
+    for (width_m, lift_m, named) in [(0.0, 0.8, "width_m"), (3.0, f64::NAN, "lift_m")] {
+        let mut settings = settings(&runs);
+        settings[0].implements.push(Implement { width_m, lift_m: Some(lift_m), ..plough() });
+        let folder = tempfile::tempdir().unwrap();
+        let scene = Scene { forces: &[], settings: &settings, ..scene(&runs, &[]) };
+        let error = write(&scene, &folder.path().join("run.rrd")).unwrap_err();
+        assert!(matches!(error, ViewError::Body { name, .. } if name == named), "{error}");
+    }
+}
+
 #[test]
 fn a_rig_without_wheels_is_refused() {
     let runs = [rigid("r1")];
-    let bare =
-        [Setting { run: "r1", rig: Some(Rig { wheels: Vec::new(), ..rig() }), trailer: None, relief: None }];
+    let rig = Some(Rig { wheels: Vec::new(), ..rig() });
+    let bare = [Setting { run: "r1", rig, trailer: None, implements: Vec::new(), relief: None }];
     let folder = tempfile::tempdir().unwrap();
     let scene = Scene { forces: &[], settings: &bare, ..scene(&runs, &[]) };
     let error = write(&scene, &folder.path().join("run.rrd")).unwrap_err();

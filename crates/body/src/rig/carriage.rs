@@ -18,7 +18,7 @@ const RESTING_M: f64 = 1e-3;
 /// A vehicle that has come to rest rocks on its tyres, and has set off beyond this speed [m/s].
 const SETS_OFF_M_S: f64 = 0.05;
 /// The same where brakes hold every wheel: a hard stop rocks harder, and what goes faster slides [m/s].
-const SLIDES_M_S: f64 = 0.5;
+pub(super) const SLIDES_M_S: f64 = 0.5;
 
 impl Carriage for Rig<'_> {
     fn motion(&self) -> Motion {
@@ -53,7 +53,7 @@ impl Carriage for Rig<'_> {
         }
     }
 
-    fn advance(&mut self, push: &Push, step_s: f64) -> Stepped {
+    fn advance(&mut self, push: &Push, step_s: f64) -> Option<Stepped> {
         let mass_j = self.load(push);
         let before = self.state;
         let speed_m_s = before.speed_m_s();
@@ -91,6 +91,15 @@ impl Carriage for Rig<'_> {
             moment += turn;
         }
         self.world.step((force, moment), towed_push, step_s);
+        if let Some(told) = self.impossible(force.abs().max_element(), step_s) {
+            self.trouble.get_or_insert(told);
+            self.spin.put_back(rolled);
+            if let Some(towed) = &mut self.towed {
+                towed.spin.put_back(towed_turned.0);
+            }
+            self.world.put_back(&before, self.towed.as_ref().map(|towed| &towed.state));
+            return None;
+        }
         self.state = self.world.state();
         if self.hops {
             hop::follow(&mut self.wheels, (&before, &self.state), step_s);
@@ -128,7 +137,7 @@ impl Carriage for Rig<'_> {
             after_m_s * speed_m_s <= 0.0
         };
         self.look(step_s);
-        stepped
+        Some(stepped)
     }
 
     fn trouble(&self) -> Option<String> {
@@ -176,7 +185,7 @@ impl Carriage for Rig<'_> {
     }
 
     fn write(&self, row: &mut Vec<f64>) {
-        let State { turning, velocity, centre, .. } = self.state;
+        let State { turning, velocity, pose, .. } = self.state;
         let (ahead, left, up) = (self.state.ahead(), self.state.left(), self.state.up());
         row.extend([
             // The right side down, and the nose up, count positive.
@@ -186,7 +195,8 @@ impl Carriage for Rig<'_> {
             -turning.z,
             velocity.dot(left),
             self.track.left_m,
-            centre.z,
+            // As east and north, of the vehicle's own: what is loaded moves neither.
+            pose.translation.z,
             self.rising_m_s2,
         ]);
         if let Some(towed) = &self.towed {

@@ -34,6 +34,11 @@ fn what_is_loaded_presses_the_axles_by_the_lever_and_the_ledger_closes() {
     let added_n = last(&outcome, "axle_2_load_n") - before_n + slowing_n;
     let by_hand = 2_000.0 * GRAVITY * 2.6 / 3.6;
     assert!((added_n / by_hand - 1.0).abs() < 0.01, "{added_n} {by_hand}");
+    // The height is the vehicle's own: it falls by what the tyres give way, and not by where the load is.
+    let fallen_m = |channel: &str| last(&outcome, channel) - super::channel(&outcome, channel)[0];
+    let [front_m, rear_m] = ["axle_1_left_deflection_m", "axle_2_left_deflection_m"].map(fallen_m);
+    let given_m = (2.0 * front_m + 1.6 * rear_m) / 3.6;
+    assert!((fallen_m("height_m") + given_m).abs() < 2e-4, "{} {given_m}", fallen_m("height_m"));
     let nowhere = simulate(&model, &chassis(), &level, 0.0).unwrap();
     let End::Stopped { reason, .. } = nowhere.end else { panic!("{:?}", nowhere.end) };
     assert!(reason.contains("no `payload`"), "{reason}");
@@ -99,6 +104,64 @@ fn a_resistance_that_is_no_number_ends_the_run_with_its_place_and_what_was_befor
         assert!(reason.contains("expected a finite force"), "{reason}");
         assert!((3.3..3.5).contains(position_m), "{position_m}");
         assert!(super::channel(&outcome, "speed_m_s").iter().all(|speed| speed.is_finite()));
+    }
+}
+
+/// Something at the hitch that from 1 s on pulls back, or pushes, with so much.
+#[derive(Debug)]
+struct Hauled(Load);
+
+impl Task for Hauled {
+    fn load(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Load {
+        if at.time_s >= 1.0 { self.0 } else { Load::default() }
+    }
+}
+
+/// Rolls out from 4 m/s against such a load; gives why it ended, where, and its run.
+fn hauled(load: Load) -> (String, f64, headland_sim::Outcome) {
+    let mut model = model(terrain::<Flat>("()"), soil::<Constant>("(coefficient: 0.03)"));
+    model.tasks.push(Named { name: "hauled".to_owned(), plugin: Box::new(Hauled(load)) });
+    let outcome = run(&model, &cycle(4.0, coast_down(), 2e-3));
+    let End::Stopped { reason, position_m, time_s } = outcome.end.clone() else {
+        panic!("{load:?}: {:?}", outcome.end)
+    };
+    assert!((time_s - 1.0).abs() < 3e-3, "{time_s}");
+    (reason, position_m, outcome)
+}
+
+/// A pull without measure took the vehicle to a speed that has no square; that was taken for none, and the run was said to be
+/// finished. Now it ends before the step: 4 t − ½ 0.03 g t² on the way, and everything up to there is a number that closes.
+#[test]
+fn forces_without_measure_end_the_run_where_they_begin_and_keep_what_was_before() {
+    let most = f64::MAX;
+    let back = |drawbar_force_n| Load { drawbar_force_n, ..Load::default() };
+    let push = |force_n| Load { force_n, ..Load::default() };
+    for load in [back(most), push(most), push(-most), back(1e200)] {
+        let (reason, position_m, outcome) = hauled(load);
+        assert!(reason.contains("the motion is no finite number"), "{reason}");
+        assert!((position_m - (4.0 - 0.015 * GRAVITY)).abs() < 0.02, "{position_m}");
+        let trace = &outcome.trace;
+        assert!(trace.len() > 490 && (trace.time_s().last().unwrap() - 1.0).abs() < 3e-3);
+        for channel in ["position_m", "speed_m_s", "height_m", "pitch_rad", "axle_1_left_load_n"] {
+            assert!(super::channel(&outcome, channel).iter().all(|value| value.is_finite()), "{channel}");
+        }
+        assert!((last(&outcome, "speed_m_s") - (4.0 - 0.03 * GRAVITY)).abs() < 0.02);
+        assert!(outcome.ledger.relative_residual() < 1e-3, "{:?}", outcome.ledger);
+    }
+}
+
+/// 100 MN make 15 m/s of 13 t within 2 ms, 10 GN 1500 m/s: the vehicle stood after one such step, and was said to be finished.
+#[test]
+fn a_pull_that_throws_the_vehicle_back_within_a_step_ends_the_run() {
+    for (drawbar_force_n, told) in [
+        (1e8, "turns 3.7 m/s into -11"),
+        (1e10, "rolls past its footprint"),
+        (1e150, "rolls past its footprint"),
+    ] {
+        let (reason, position_m, outcome) = hauled(Load { drawbar_force_n, ..Load::default() });
+        assert!(reason.contains(told) && reason.len() < 200, "{reason}");
+        assert!((3.8..3.9).contains(&position_m), "{position_m}");
+        assert!(outcome.ledger.relative_residual() < 1e-3, "{:?}", outcome.ledger);
     }
 }
 

@@ -1,10 +1,11 @@
 //! Steps per second of the rigid body: one vehicle, and 64 at once. `cargo bench --bench rigid_body [-- SCENARIO.ron ...]`.
 //!
 //! Four wheels, each with its tyre, its soil and its slip, driveline, driver and trace included: on the level, on two maps of
-//! heights (with a soil that knows resistance only, and with one that knows slip and ruts), and on a side slope. The fastest of
-//! some rounds counts, so that a busy machine disturbs little; but 64 vehicles take long, and find no free moment on one that is
-//! busy throughout. Whether threads stand in each other's way is told by the time that all processors together take for a step,
-//! which is that of one vehicle alone where they do not. All 64 have to come to the same bits as the one.
+//! heights (with a soil that knows resistance only, and with one that knows slip and ruts), on a side slope, and on suspended
+//! axles whose hubs hop over rough ground. The fastest of some rounds counts, so that a busy machine disturbs little; but 64
+//! vehicles take long, and find no free moment on one that is busy throughout. Whether threads stand in each other's way is told
+//! by the time that all processors together take for a step, which is that of one vehicle alone where they do not. All 64 have to
+//! come to the same bits as the one.
 
 #![allow(clippy::print_stdout, reason = "a bench prints what it measures")]
 #![allow(clippy::unwrap_used, reason = "a bench stops where something is missing")]
@@ -25,7 +26,13 @@ const VEHICLES: usize = 64;
 fn main() {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
     let registry = headland_stock::registry();
-    let own = ["coast_down_rigid", "rough_ground_rigid", "rolling_field_rigid", "side_slope_rigid"];
+    let own = [
+        "coast_down_rigid",
+        "rough_ground_rigid",
+        "rolling_field_rigid",
+        "side_slope_rigid",
+        "wheel_hop_rigid",
+    ];
     let mut paths: Vec<PathBuf> =
         std::env::args_os().skip(1).filter(|word| word != "--bench").map(PathBuf::from).collect();
     if paths.is_empty() {

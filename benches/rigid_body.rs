@@ -2,10 +2,10 @@
 //!
 //! Four wheels, each with its tyre, its soil and its slip, driveline, driver and trace included: on the level, on two maps of
 //! heights (with a soil that knows resistance only, and with one that knows slip and ruts), on a side slope, and on suspended
-//! axles whose hubs hop over rough ground. The fastest of
-//! some rounds counts, so that a busy machine disturbs little; but 64 vehicles take long, and find no free moment on one that is
-//! busy throughout. Whether threads stand in each other's way is told by the time that all processors together take for a step,
-//! which is that of one vehicle alone where they do not. All 64 have to come to the same bits as the one.
+//! axles whose hubs hop over rough ground. The fastest of some rounds counts, so that a busy machine disturbs little; but 64
+//! vehicles take long, and find no free moment on one that is busy throughout. Whether threads stand in each other's way is told
+//! by the time that all processors together take for a step, which is that of one vehicle alone where they do not. All 64 have to
+//! come to the same bits as the one.
 
 #![allow(clippy::print_stdout, reason = "a bench prints what it measures")]
 #![allow(clippy::unwrap_used, reason = "a bench stops where something is missing")]

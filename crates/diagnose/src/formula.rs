@@ -116,16 +116,16 @@ impl Rows for Whitening<'_> {
     }
 }
 
-/// The law that is worth it, beside what is known.
-pub fn law(
+/// The law that is worth it, beside what is known, and behind it the best of fewer terms.
+pub fn laws(
     case: &Case,
     system: &System,
     pool: &Pool,
     beside: &[Part],
     noises: &Noises,
     sought: &Sought,
-) -> Result<Option<Law>, DiagnoseError> {
-    let Some(whiteners) = noises.whiteners(&system.chunks) else { return Ok(None) };
+) -> Result<Vec<Law>, DiagnoseError> {
+    let Some(whiteners) = noises.whiteners(&system.chunks) else { return Ok(Vec::new()) };
     let state = State { case, system, pool, fit: &case.fit };
     let whitening = Whitening { system, whiteners, sought };
     let runs = 0..case.runs.len();
@@ -166,10 +166,10 @@ pub fn law(
     };
     let options = Options { seed: case.options.seed, ..Options::default() };
     match find(&problem, &options, &|| case.progress.interrupted()) {
-        Ok(found) => Ok(found.law().cloned()),
+        Ok(found) => Ok(found.laws().into_iter().cloned().collect()),
         Err(SymbolicError::Interrupted) => Err(DiagnoseError::Interrupted),
         // What is no problem for it has no law either: no rows, a run without samples.
-        Err(_) => Ok(None),
+        Err(_) => Ok(Vec::new()),
     }
 }
 

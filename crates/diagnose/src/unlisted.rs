@@ -4,10 +4,11 @@
 
 use crate::balance::Kind;
 use crate::catalogue::{Cause, Form, LawText};
-use crate::formula::{self, Sought, law};
+use crate::formula::{Sought, laws};
 use crate::gram::Column;
 use crate::look::MANY_ROWS;
 use crate::losses::SPEED_SQUARED;
+use crate::noise::Noises;
 use crate::search::{Found, MOST_CAUSES, OTHER_WORDS, TOLERANCE, concluded, worth};
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Trial, add_trial};
@@ -109,24 +110,24 @@ fn candidates(
         starts.push(listed);
     }
     for start in starts {
-        let Some(mut law) = law(case, system, pool, &start, &found.stand.noises, sought)? else {
-            continue;
-        };
-        if start.is_empty() && rows <= MANY_ROWS {
-            candidates.extend(with_less(case, system, pool, &law, sought));
+        let told = laws(case, system, pool, &start, &found.stand.noises, sought)?;
+        if let Some(law) = told.first().filter(|_| start.is_empty() && rows <= MANY_ROWS) {
+            candidates.extend(with_less(case, system, pool, law, sought));
         }
-        if is_map(&law, sought.target) || is_undetermined(&law) {
-            continue;
-        }
+        // Terms more may patch what a good one leaves.
+        let mut sound = told.into_iter().filter(|law| is_sound(law, sought.target));
+        let Some(mut law) = sound.next() else { continue };
         let mut part = add(case, system, pool, &law, sought);
+        for simpler in sound.filter(|_| rows <= MANY_ROWS) {
+            let part = add(case, system, pool, &simpler, sought);
+            candidates.push(start.iter().cloned().chain([part]).collect());
+        }
         // Once more with the noise that is left then: what was fitted to the whole mismatch hides slow laws.
         let state = State { case, system, pool, fit: &case.fit };
         let with = |part: &Part| start.iter().cloned().chain([part.clone()]).collect::<Vec<Part>>();
         if let Some(settled) = state.settle(&with(&part), &found.stand.noises)
             && (rows <= MANY_ROWS || worth(&settled) > worth(&found.stand))
-            && let Some(better) = formula::law(case, system, pool, &start, &settled.noises, sought)?
-            && !is_map(&better, sought.target)
-            && !is_undetermined(&better)
+            && let Some(better) = sound_law(case, system, pool, &start, &settled.noises, sought)?
         {
             law = better;
             part = add(case, system, pool, &law, sought);
@@ -209,9 +210,7 @@ fn beside(
         let terms = state.pieces(&stand) - listed.len();
         if !listed.is_empty()
             && rows <= MANY_ROWS
-            && let Some(law) = law(case, system, pool, &listed, &stand.noises, sought)?
-            && !is_map(&law, sought.target)
-            && !is_undetermined(&law)
+            && let Some(law) = sound_law(case, system, pool, &listed, &stand.noises, sought)?
             && law.terms <= terms
         {
             let part = add(case, system, pool, &law, sought);
@@ -234,6 +233,24 @@ fn beside(
         state.sets_as_good(&mut found, &[other]);
     }
     Ok(found)
+}
+
+/// The law that is worth it, where it is sound.
+fn sound_law(
+    case: &Case,
+    system: &System,
+    pool: &Pool,
+    beside: &[Part],
+    noises: &Noises,
+    sought: &Sought,
+) -> Result<Option<Law>, DiagnoseError> {
+    let best = laws(case, system, pool, beside, noises, sought)?.into_iter().next();
+    Ok(best.filter(|law| is_sound(law, sought.target)))
+}
+
+/// Whether a law draws no map, and each of its terms is known.
+fn is_sound(law: &Law, target: Target) -> bool {
+    !is_map(law, target) && !is_undetermined(law)
 }
 
 /// Whether a law draws a map: softer ground and slopes are that by their definition, and so is a consumer that is switched

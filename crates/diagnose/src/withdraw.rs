@@ -159,7 +159,10 @@ fn without_idle(
         (None, Form::OverPosition) => 0.0,
         (None, _) => return Ok(None),
     };
-    let kind = system.kinds.iter().copied().find(|kind| kind.among(cause.balances));
+    // What takes power at a shaft takes fuel for it: where it shows most is where it is told.
+    let accepted = best.refined.causes.iter().find(|cured| cured.accepted.trial.columns == trial.columns);
+    let shown = accepted.map(|cured| system.kinds[cured.accepted.balance]);
+    let kind = shown.or_else(|| system.kinds.iter().copied().find(|kind| kind.among(cause.balances)));
     let (Some(kind), Some(found)) = (kind, without(case, system, pool, &best.found, place)) else {
         return Ok(None);
     };

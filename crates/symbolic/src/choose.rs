@@ -25,6 +25,18 @@ impl Found {
     pub fn law(&self) -> Option<&Law> {
         self.chosen.and_then(|index| self.front.get(index))
     }
+
+    /// The law that was chosen, and behind it the best of each smaller number of terms.
+    pub fn laws(&self) -> Vec<&Law> {
+        let mut laws: Vec<&Law> = self.law().into_iter().collect();
+        let simpler = self.front[..self.chosen.unwrap_or(0)].iter().rev();
+        for law in simpler.filter(|law| law.terms > 0) {
+            if laws.last().is_some_and(|last| law.terms < last.terms) {
+                laws.push(law);
+            }
+        }
+        laws
+    }
 }
 
 /// A law that was validated.

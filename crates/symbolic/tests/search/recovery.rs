@@ -53,6 +53,18 @@ fn a_product_of_two_variables_is_found() {
     assert!(r2 > 0.95 && law.names("v") && law.names("heading") && law.terms == 1, "{r2} {}", law.text);
 }
 
+/// Terms more may patch what a good one leaves: who asks for the law is told the best of fewer terms as well.
+#[test]
+fn behind_a_law_of_several_terms_stands_the_best_of_fewer() {
+    let (found, _) =
+        found(6, 60.0, |at| 400.0 * (TAU * at.x / 13.37 + 0.7).sin() + 90.0 * (at.v - 4.5).max(0.0));
+    let laws = found.laws();
+    assert!(laws.len() > 1 && laws[0].text == found.law().unwrap().text, "{}", laws.len());
+    assert!(laws.windows(2).all(|pair| pair[1].terms < pair[0].terms));
+    let one = laws.last().unwrap();
+    assert!(one.terms == 1 && one.names("sin"), "{}", one.text);
+}
+
 #[test]
 fn a_law_of_two_terms_is_found() {
     let law = |at: &At| {

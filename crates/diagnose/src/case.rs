@@ -320,6 +320,14 @@ impl<'a> Case<'a> {
         self.runs.iter().map(|run| run.measured.trace.duration_s()).fold(0.0, f64::max)
     }
 
+    /// Whether fitted runs drive a path both ways.
+    pub fn drives_a_path_both_ways(&self) -> bool {
+        let fitted = self.runs.iter().zip(&self.fit).filter(|(_, fit)| **fit);
+        let ways: Vec<(usize, bool)> =
+            fitted.map(|(run, _)| (run.path, run.measured.how.reversed_from_m.is_some())).collect();
+        ways.iter().any(|(path, way)| ways.contains(&(*path, !way)))
+    }
+
     /// Whether force or torque drives somewhere.
     pub fn driven(&self) -> bool {
         self.runs.iter().any(|run| {

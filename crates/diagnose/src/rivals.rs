@@ -1,6 +1,7 @@
 //! What could stand in the place of a cause: other causes, other sets, and the same function by another name.
 
-use crate::catalogue::Cause;
+use crate::balance::Kind;
+use crate::catalogue::{Cause, Form};
 use crate::conclude::Side;
 use crate::search::{Accepted, Beside, Found, OTHER_WORDS, Rival, TOLERANCE, worth};
 use crate::state::{Stand, State};
@@ -28,7 +29,9 @@ impl State<'_> {
         for other in &side.contests {
             let Some(own) = other.stand.parts.last() else { continue };
             let listed = rivals.iter().any(|rival| self.case.causes[rival.cause].id == self.id(&own.trial));
-            if self.id(&own.trial) == id || listed || other.stand.score <= best.score - TOLERANCE {
+            let as_good = other.stand.score > best.score - TOLERANCE;
+            let alike = as_good || self.is_place_told_one_way(&side.part.trial, &own.trial);
+            if self.id(&own.trial) == id || listed || !alike {
                 continue;
             }
             let correlation = reduced.squared_correlation(
@@ -45,6 +48,16 @@ impl State<'_> {
             });
         }
         rivals
+    }
+
+    /// Whether one cause is a law of places alone and the other a map of them, and neither was a path driven both ways nor an
+    /// accelerometer there to tell: waves of a road are slopes by their name, however short the formula that draws them, and
+    /// however coarse the map.
+    fn is_place_told_one_way(&self, own: &Trial, other: &Trial) -> bool {
+        let (own, other) = (self.cause(own), self.cause(other));
+        let of_place = own.law.as_ref().is_some_and(|law| law.depends_on == ["position_m"]);
+        let told = self.system.has(Kind::Parity) || self.case.drives_a_path_both_ways();
+        of_place && other.form == Form::OverPosition && !told
     }
 
     /// The free parameters as a set has them.

@@ -88,7 +88,8 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
         Kind::Size | Kind::Coordinate => {
             all.extend(POWERS.map(|p| make(Shape::Power(p), of.round_size(), 0.0)));
             all.extend(FREE_POWERS.map(|p| make(Shape::FreePower(p), of.round_size(), 0.0)));
-            curved(&mut all, &[Shape::Tanh, Shape::Saturation, Shape::Hyperbola, Shape::Decay], of.size());
+            let bends = [Shape::Tanh, Shape::Saturation, Shape::Hyperbola, Shape::Decay, Shape::Rise];
+            curved(&mut all, &bends, of.size());
             edges(&mut all);
         }
         Kind::Level => {

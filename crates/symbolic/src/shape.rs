@@ -22,6 +22,8 @@ pub(crate) enum Shape {
     Hyperbola,
     /// exp(−u/s)
     Decay,
+    /// 1 − exp(−u/s): what grows towards a level.
+    Rise,
     /// max((u − c)/s, 0)
     Above,
     /// max((c − u)/s, 0)
@@ -59,7 +61,9 @@ impl Shape {
     /// Which constants are free.
     pub fn free(self) -> &'static [Free] {
         match self {
-            Self::Tanh | Self::Saturation | Self::Hyperbola | Self::Decay | Self::Wave => &[Free::Scale],
+            Self::Tanh | Self::Saturation | Self::Hyperbola | Self::Decay | Self::Rise | Self::Wave => {
+                &[Free::Scale]
+            }
             Self::FreePower(_) => &[Free::Power],
             Self::Above | Self::Below => &[Free::Centre],
             Self::Step | Self::Bump => &[Free::Centre, Free::Scale],
@@ -109,7 +113,7 @@ fn takes_size(shape: Shape, of: &Checked) -> bool {
         Shape::Power(p) => p.fract() != 0.0 || (both && p.rem_euclid(2.0) == 1.0),
         Shape::FreePower(_) => true,
         Shape::Saturation | Shape::Hyperbola => of.negative,
-        Shape::Decay => both,
+        Shape::Decay | Shape::Rise => both,
         _ => false,
     }
 }
@@ -131,6 +135,7 @@ impl Factor {
             Shape::Saturation => u / (u + s),
             Shape::Hyperbola => 1.0 / (1.0 + u / s),
             Shape::Decay => (-u / s).exp(),
+            Shape::Rise => 1.0 - (-u / s).exp(),
             Shape::Above => ((u - c) / s).max(0.0),
             Shape::Below => ((c - u) / s).max(0.0),
             Shape::Step => 0.5 * (1.0 + ((u - c) / s).tanh()),
@@ -157,6 +162,7 @@ impl Factor {
             Shape::Saturation => format!("({u} / ({u} + {scale}))"),
             Shape::Hyperbola => format!("(1 / (1 + {u} / {scale}))"),
             Shape::Decay => format!("exp(-{u} / {scale})"),
+            Shape::Rise => format!("(1 - exp(-{u} / {scale}))"),
             Shape::Above => format!("max(({u} - {centre}) / {scale}, 0)"),
             Shape::Below => format!("max(({centre} - {u}) / {scale}, 0)"),
             Shape::Step => format!("0.5 * (1 + tanh(({u} - {centre}) / {scale}))"),

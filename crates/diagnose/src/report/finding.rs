@@ -134,7 +134,7 @@ pub fn verdict(findings: &[FindingReport], lack_of_fit: f64, timed: bool) -> Ver
         return if far { Verdict::CannotTell } else { Verdict::None };
     };
     let doubtful = any(FindingKind::Physics) && far && !timed;
-    if first.kind == FindingKind::Unlisted {
+    if first.kind == FindingKind::Unlisted && !first.is_doubtful() {
         Verdict::Unlisted
     } else if first.is_doubtful()
         || doubtful
@@ -407,6 +407,7 @@ mod tests {
         assert_eq!(verdict(&[fault(), doubtful()]), Verdict::Both);
         assert_eq!(verdict(&[doubtful(), fault()]), Verdict::CannotTell);
         assert_eq!(verdict(&[finding(FindingKind::Unlisted, "unlisted", None), sure()]), Verdict::Unlisted);
+        assert_eq!(verdict(&[finding(FindingKind::Unlisted, "unlisted", Some("grade"))]), Verdict::CannotTell);
     }
 
     #[test]

@@ -46,6 +46,14 @@ fn a_decay_over_time_is_found_with_its_constant() {
     close(constant(&found, "t1_s"), 6.3);
 }
 
+/// A constant beside a decay would say it in two terms.
+#[test]
+fn what_grows_towards_a_level_is_found_as_that() {
+    let (found, r2) = found(3, 60.0, |at| 700.0 * (1.0 - (-at.v / 1.3).exp()));
+    let law = found.law().unwrap();
+    assert!(r2 > 0.95 && law.terms == 1 && law.text.contains("1 - exp"), "{r2} {}", law.text);
+}
+
 #[test]
 fn a_product_of_two_variables_is_found() {
     let (found, r2) = found(3, 100.0, |at| 50.0 * at.v * (at.heading - 0.9).cos());

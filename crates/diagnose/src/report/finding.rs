@@ -407,7 +407,10 @@ mod tests {
         assert_eq!(verdict(&[fault(), doubtful()]), Verdict::Both);
         assert_eq!(verdict(&[doubtful(), fault()]), Verdict::CannotTell);
         assert_eq!(verdict(&[finding(FindingKind::Unlisted, "unlisted", None), sure()]), Verdict::Unlisted);
-        assert_eq!(verdict(&[finding(FindingKind::Unlisted, "unlisted", Some("grade"))]), Verdict::CannotTell);
+        assert_eq!(
+            verdict(&[finding(FindingKind::Unlisted, "unlisted", Some("grade"))]),
+            Verdict::CannotTell
+        );
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! What is kept of a run.
 
 use crate::comparison::Accounting;
-use headland_sim::{End, Outcome};
+use headland_sim::{Driven, End, Outcome, speed_not_kept};
 use headland_trace::Trace;
 
 /// How a run ended.
@@ -58,7 +58,10 @@ impl Row {
     /// Counts what a simulation left behind.
     pub(crate) fn of(number: u64, outcome: &Outcome, accounting: &Accounting) -> Self {
         let (status, error) = match &outcome.end {
-            End::Finished => (Status::Finished, String::new()),
+            End::Finished => match speed_not_kept(&outcome.phases) {
+                Some(told) => (Status::Stopped, told),
+                None => (Status::Finished, String::new()),
+            },
             End::Stopped { time_s, position_m, reason } => {
                 (Status::Stopped, format!("{reason} (at {time_s:.2} s and {position_m:.1} m)"))
             }
@@ -81,6 +84,7 @@ impl Row {
         let counted = [
             ("time_s", trace.duration_s()),
             ("distance_m", series("position_m").windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum()),
+            ("short_m", outcome.phases.iter().filter_map(Driven::short_m).sum()),
             ("area_worked_m2", area_m2(trace)),
             ("greatest_speed_m_s", series("speed_m_s").iter().copied().fold(0.0, f64::max)),
             ("fuel_kg", fuel_kg),

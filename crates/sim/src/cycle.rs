@@ -5,6 +5,7 @@ use crate::ending::Ending;
 use crate::ledger::Ledger;
 use crate::plan::{Cycle, Driven, Phase, Setting};
 use crate::recorder::Recorder;
+use crate::reference::Reference;
 use crate::simulation::Simulation;
 use crate::step::{Machine, Moment};
 use crate::{End, Outcome};
@@ -118,7 +119,9 @@ impl<'a> Running<'a> {
             bare => (Setting::default(), bare),
         };
         let (from_s, from_m) = (self.machine.time_s, self.machine.position_m());
-        let result = if self.entered(&setting)? {
+        let entered = self.entered(&setting)?;
+        let wanted = self.wanted(phase).filter(|_| entered);
+        let result = if entered {
             self.set(&setting).and_then(|()| self.drive(phase))
         } else {
             Ok("passed over: what it waits for is not so".to_owned())
@@ -131,8 +134,23 @@ impl<'a> Running<'a> {
             from_m,
             to_m: self.machine.position_m(),
             ended_by: result.clone().unwrap_or_else(|reason| format!("stopped: {reason}")),
+            wanted_m: wanted.map(|wanted| wanted.way_m(self.machine.time_s).abs()),
+            may_slow_down: !matches!(phase, Phase::Hold { .. } | Phase::Follow { .. }),
         });
         result.map(|_| ())
+    }
+
+    /// The speed that a phase wants over its time, where it says so.
+    fn wanted(&self, phase: &Phase) -> Option<Reference> {
+        let (begin_s, speed_m_s) = (self.machine.time_s, self.machine.speed_m_s());
+        match phase {
+            Phase::Hold { .. } => Some(Reference::steady(begin_s, self.target_m_s)),
+            Phase::Follow { profile } => Some(Reference::along(begin_s, profile)),
+            Phase::Drive { speed_m_s: target, acceleration_m_s2, .. } => {
+                Some(Reference::ramp(begin_s, speed_m_s, *target, *acceleration_m_s2))
+            }
+            _ => None,
+        }
     }
 
     /// Whether every guard of a phase holds. That of a group is asked once.

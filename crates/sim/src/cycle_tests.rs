@@ -1,7 +1,7 @@
 //! Phases: what ends them, what goes on in them, and how a cycle that cannot be driven is told.
 
 use crate::physics_tests::{drive, last, tractor};
-use crate::{End, EngineSpeed, Guard, Model, Named, Outcome, Phase, Pi, Setting, Until};
+use crate::{End, EngineSpeed, Guard, Model, Named, Outcome, Phase, Pi, Setting, Until, speed_not_kept};
 use headland_plugin::{Delivery, Demand, Driveline, Load, Mode, Place, Situation, State, Task, Terrain};
 
 /// A tank that takes and gives 80 kg/s, pulls 500 N where it works, and holds a tonne.
@@ -226,6 +226,34 @@ fn a_vehicle_without_enough_force_says_so_at_rest_and_where_it_falls_behind() {
     let slow = drive(&tractor(f64::INFINITY, 6.0), 3.0, 0.1, vec![phase(Some(0.5))]);
     assert!(reason(&slow).2.contains("falls behind"), "{:?}", slow.end);
     assert_eq!(drive(&tractor(f64::INFINITY, 6.0), 3.0, 0.1, vec![phase(None)]).end, End::Finished);
+}
+
+/// Held: 3 m/s for 10 s, 30 m. Followed: 0 to 6 m/s in 4 s, then 3 s at 6 m/s, 12 + 18 m. Uphill under ten times the weight no
+/// force is left for either; a drive that something slows down may.
+#[test]
+fn a_speed_that_is_wanted_and_not_kept_is_told_by_the_way_that_is_missing() {
+    let held = || vec![Phase::Hold { for_s: 10.0 }];
+    let followed = || vec![Phase::Follow { profile: vec![(0.0, 0.0), (4.0, 6.0), (7.0, 6.0)] }];
+    let strong = tractor(f64::INFINITY, 6.0);
+    let mut weak = tractor(f64::INFINITY, 6.0);
+    weak.gravity_m_s2 = 100.0;
+    for (phases, start_m_s, wanted_m) in [(held as fn() -> Vec<Phase>, 3.0, 30.0), (followed, 0.0, 30.0)] {
+        let kept = drive(&strong, start_m_s, 0.1, phases());
+        assert!((kept.phases[0].wanted_m.unwrap() - wanted_m).abs() < 1e-9);
+        assert_eq!((kept.phases[0].short_m(), speed_not_kept(&kept.phases)), (None, None));
+        let outcome = drive(&weak, start_m_s, 0.1, phases());
+        let driven = &outcome.phases[0];
+        assert!((driven.way_m() + driven.short_m().unwrap() - wanted_m).abs() < 1e-9);
+        assert!(speed_not_kept(&outcome.phases).unwrap().contains("30.0 m that its speeds ask for"));
+    }
+    let may = Phase::Drive {
+        speed_m_s: 40.0,
+        acceleration_m_s2: 5.0,
+        tolerance_m_s: None,
+        until: Until::Elapsed(20.0),
+    };
+    let slowed = drive(&strong, 3.0, 0.1, vec![may]);
+    assert!(slowed.phases[0].short_m().is_some() && speed_not_kept(&slowed.phases).is_none());
 }
 
 #[test]

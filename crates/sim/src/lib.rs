@@ -43,7 +43,7 @@ pub use axles::{Axle, Axles};
 pub use carriage::{AxleMotion, Carriage, Motion, Push, Stepped};
 pub use ledger::{Entry, Ledger};
 pub use model::{Model, Named, Resistance, Vehicle};
-pub use plan::{Cycle, Driven, EngineSpeed, Guard, Phase, Pi, Setting, Start, Until};
+pub use plan::{Cycle, Driven, EngineSpeed, Guard, Phase, Pi, Setting, Start, Until, speed_not_kept};
 pub use replay::{Drive, Inputs, Replay, ReplayError, replay};
 pub use simulation::{Simulation, simulate};
 pub use slope::{LocalFit, local_fit, travelled};

@@ -196,4 +196,46 @@ pub struct Driven {
     pub to_m: f64,
     /// What ended it, or why it was passed over, in words.
     pub ended_by: String,
+    /// Way that its speeds make of the time that it took [m], where it says what speed is wanted when.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wanted_m: Option<f64>,
+    /// Whether what it pulls may slow it down, as a plough does: a speed that is to be held or followed is not kept then.
+    pub may_slow_down: bool,
+}
+
+/// A drive that makes this share less of its way than is wanted is too weak for it; less is a matter of corners.
+const TOO_LITTLE: f64 = 0.05;
+
+impl Driven {
+    /// Way that it made [m].
+    pub fn way_m(&self) -> f64 {
+        (self.to_m - self.from_m).abs()
+    }
+
+    /// By how much it fell short of its way [m], where that is more than corners make.
+    pub fn short_m(&self) -> Option<f64> {
+        let least_m = |wanted_m: &f64| self.way_m() < (1.0 - TOO_LITTLE) * wanted_m;
+        self.wanted_m.filter(least_m).map(|wanted_m| wanted_m - self.way_m())
+    }
+
+    /// How it fell short, in words.
+    pub fn told_short(&self) -> Option<String> {
+        let short_m = self.short_m()?;
+        let name = self.name.as_ref().map_or_else(String::new, |name| format!(" `{name}`"));
+        Some(format!(
+            "phase {}{name} made {:.1} m of the {:.1} m that its speeds ask for, from {:.2} s and {:.1} m on",
+            self.phase + 1,
+            self.way_m(),
+            self.way_m() + short_m,
+            self.from_s,
+            self.from_m
+        ))
+    }
+}
+
+/// The first phase that fell short of a speed that was to be held or followed, in words.
+pub fn speed_not_kept(driven: &[Driven]) -> Option<String> {
+    let strict = driven.iter().filter(|driven| !driven.may_slow_down);
+    let told = strict.filter_map(Driven::told_short).next()?;
+    Some(format!("the drive could not keep the speed that is wanted: {told}"))
 }

@@ -55,6 +55,17 @@ impl Reference {
         }
     }
 
+    /// Way from its begin to an instant [m].
+    pub fn way_m(&self, until_s: f64) -> f64 {
+        let last_s = until_s - self.begin_s;
+        let ends_s = self.points.iter().skip(1).map(|(at_s, _)| *at_s).chain([f64::INFINITY]);
+        let piece = |((from_s, speed), (end_s, rate)): (&(f64, f64), (f64, &f64))| {
+            let lasts_s = (end_s.min(last_s) - from_s).max(0.0);
+            speed * lasts_s + 0.5 * rate * lasts_s * lasts_s
+        };
+        self.points.iter().zip(ends_s.zip(&self.rates)).map(piece).sum()
+    }
+
     /// Speed at an instant [m/s].
     pub fn speed_m_s(&self, time_s: f64) -> f64 {
         self.at(time_s).0

@@ -9,7 +9,7 @@ use crate::picture::{self, Drawn, Wanted};
 use crate::say::Say;
 use headland_plugin::Registry;
 use headland_scenario::{Remark, RunSpec, Scenario};
-use headland_sim::{Driven, End, Ledger, Outcome};
+use headland_sim::{Driven, End, Ledger, Outcome, speed_not_kept};
 use headland_trace::Run;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -153,7 +153,9 @@ fn summary_of(id: &str, outcome: &Outcome) -> RunSummary {
 fn stopped(run: &RunSummary) -> Option<String> {
     match &run.end {
         // An interruption is told by how the program ends.
-        End::Finished | End::Interrupted { .. } => None,
+        End::Interrupted { .. } => None,
+        End::Finished => speed_not_kept(&run.phases)
+            .map(|told| format!("run `{}`: {told}; what was simulated is kept", run.id)),
         End::Stopped { time_s, position_m, reason } => Some(format!(
             "run `{}` could not be driven to its end: {reason} (at {time_s:.2} s and {position_m:.1} m); what was \
              simulated up to there is kept",
@@ -164,6 +166,8 @@ fn stopped(run: &RunSummary) -> Option<String> {
 
 /// A ledger that stays open by more than this part of what moved is told.
 const OPEN: f64 = 1e-3;
+/// So many phases of a run that was slowed down are told; the summary has all.
+const MOST_SLOWED: usize = 3;
 /// A run that stopped in its first steps has moved nothing to speak of.
 const FEW_STEPS: usize = 100;
 
@@ -208,6 +212,12 @@ fn told(scenario: &Scenario, summary: &Summary, took_ms: f64, output: &Output) -
             "  note     the energies of run `{}` stay open by {:.0e} of what moved: a shorter `step_s` than {step_ms} ms may help",
             run.id, run.relative_energy_residual
         );
+    }
+    for run in &summary.runs {
+        let slowed = run.phases.iter().filter(|driven| driven.may_slow_down).filter_map(Driven::told_short);
+        for told in slowed.take(MOST_SLOWED) {
+            let _ = writeln!(text, "  note     run `{}` was slowed down: {told}", run.id);
+        }
     }
     for remark in &summary.remarks {
         let _ = writeln!(text, "  note     {remark}");

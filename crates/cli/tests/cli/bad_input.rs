@@ -1,6 +1,6 @@
 //! Bad input gets exit status 2 and a message that one would thank for: what, where, and what was meant.
 
-use super::help::{Place, RECORDING, SCENARIO, log, refused};
+use super::help::{Place, RECORDING, SCENARIO, done, log, refused};
 
 /// Runs the scenario with a piece of it changed.
 fn scenario(from: &str, to: &str) -> String {
@@ -281,6 +281,34 @@ fn undriveable(
 }
 
 const FLAT: &str = "(terrain: Flat, soil: Constant(coefficient: 0.06))";
+
+/// A speed that is to be held and is not ends with status 1 too: the way that is missing is said, and all of it is kept.
+#[test]
+fn a_speed_that_the_drive_does_not_keep_is_an_end_with_status_1() {
+    let place = Place::new();
+    let scenarios = super::help::top().join("scenarios");
+    let scenarios = scenarios.display();
+    let text = |pull: &str, cycle: &str| {
+        format!(
+            "(about: \"too heavy\", vehicle: include(\"{scenarios}/vehicles/xerion_3800.ron\"), ground: {FLAT}, \
+              air: (density_kg_m3: 1.2), start: (position_m: 0, speed_m_s: 2), tasks: [Drawbar(force_n: \"{pull}\")], cycle: [{cycle}], \
+              simulation: (fidelity: Longitudinal, step_s: 0.1))"
+        )
+    };
+    place.write("held.ron", &text("150 kN", "Hold(for_s: 30)"));
+    let told = refused(1, &["run", &place.path("held.ron"), "--out", &place.path("held")]);
+    holds(
+        &told,
+        &["could not keep the speed that is wanted", "of the 60.0 m that its speeds ask for", "is kept"],
+    );
+    assert_eq!(place.json("held/summary.json")["runs"][0]["phases"][0]["wanted_m"], 60.0);
+    place.write(
+        "slowed.ron",
+        &text("10 kN", "Drive(speed_m_s: 13, acceleration_m_s2: 3, until: Elapsed(for_s: 30))"),
+    );
+    let told = done(&["run", &place.path("slowed.ron"), "--out", &place.path("slowed")]);
+    holds(&told, &["was slowed down: phase 1 made"]);
+}
 
 /// Every way in which a cycle cannot be driven ends its run with the time, the place and the reason, and with status 1.
 #[test]

@@ -235,7 +235,6 @@ impl Driven {
 
 /// The first phase that fell short of a speed that was to be held or followed, in words.
 pub fn speed_not_kept(driven: &[Driven]) -> Option<String> {
-    let strict = driven.iter().filter(|driven| !driven.may_slow_down);
-    let told = strict.filter_map(Driven::told_short).next()?;
+    let told = driven.iter().filter(|driven| !driven.may_slow_down).find_map(Driven::told_short)?;
     Some(format!("the drive could not keep the speed that is wanted: {told}"))
 }

@@ -6,6 +6,7 @@
 #![allow(clippy::unwrap_used, reason = "a benchmark stops where something is missing")]
 
 use headland_batch::{Comparison, Journal, Plan, Settings, execute, table};
+use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
@@ -80,8 +81,9 @@ fn written(memory: &[(u32, f64)], turns: &[(Took, Took)], ratio: f64) -> std::io
          journal.\n\n| 10,000 runs | one core | two cores | ratio | processors' time, one | two |\n|---|---:|---:|---:|---:|---:|\n",
     );
     for (turn, (one, two)) in turns.iter().enumerate() {
-        text += &format!(
-            "| turn {} | {:.2} s | {:.2} s | {:.3} | {:.2} s | {:.2} s |\n",
+        let _ = writeln!(
+            text,
+            "| turn {} | {:.2} s | {:.2} s | {:.3} | {:.2} s | {:.2} s |",
             turn + 1,
             one.seconds,
             two.seconds,
@@ -90,11 +92,12 @@ fn written(memory: &[(u32, f64)], turns: &[(Took, Took)], ratio: f64) -> std::io
             two.busy_seconds
         );
     }
-    text += &format!(
-        "\nMedian of the ratios: {ratio:.3}, of at least 1.9 that are asked for.\n\n| runs | greatest memory |\n|---:|---:|\n"
+    let _ = writeln!(
+        text,
+        "\nMedian of the ratios: {ratio:.3}, of at least 1.9 that are asked for.\n\n| runs | greatest memory |\n|---:|---:|"
     );
     for (runs, greatest_mb) in memory {
-        text += &format!("| {runs} | {greatest_mb:.1} MB |\n");
+        let _ = writeln!(text, "| {runs} | {greatest_mb:.1} MB |");
     }
     std::fs::write(page, text)
 }

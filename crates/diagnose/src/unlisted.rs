@@ -254,14 +254,17 @@ fn is_sound(law: &Law, target: Target) -> bool {
 }
 
 /// Whether a law draws a map: softer ground and slopes are that by their definition, and so is a consumer that is switched
-/// with time, beside something else or in several shapes of one. A wave that goes on all the way is none.
+/// with time, beside something else or in several shapes of one. A wave that goes on all the way is none; places where it is on
+/// and others where it is off are patches.
 fn is_map(law: &Law, target: Target) -> bool {
     const WAVE: &str = "sin";
+    const PULSE: &str = " - level";
     let drawn: &[&str] = if target == Target::Power { &["x", "t"] } else { &["x"] };
     let only =
         |term: &[&str]| drawn.iter().any(|name| !term.is_empty() && term.iter().all(|own| own == name));
     let terms = law.variables_of_terms();
-    let alone = terms.len() == 1 && law.names(WAVE);
+    let patches = law.text.contains(PULSE) && terms.iter().any(|term| term.iter().all(|own| *own == "x"));
+    let alone = terms.len() == 1 && law.names(WAVE) && !patches;
     !alone && terms.iter().any(|term| only(term))
 }
 
@@ -578,6 +581,9 @@ mod tests {
         let told = |text: &str, target: Target| is_map(&law(text, &[]), target);
         assert!(told("a1_n * exp(-((x - x1_m) / x2_m)^2)", Target::Force));
         assert!(!told("a1_n * sin(6.28 * x / x1_m + phase1_rad)", Target::Force));
+        let pulse =
+            |of: &str| format!("a1_n * 0.5 * (1 + tanh(20 * (sin(6.28 * ({of} - {of}1) / {of}2) - level1)))");
+        assert!(told(&pulse("x"), Target::Force) && !told(&pulse("t"), Target::Force));
         assert!(told("a1_n * (v / v1_m_s) + a2_n * exp(-((x - x1_m) / x2_m)^2)", Target::Force));
         assert!(!told("a1_n * exp(-((t - t1_s) / t2_s)^2)", Target::Force));
         assert!(told("a1_w * exp(-((t - t1_s) / t2_s)^2)", Target::Power));

@@ -8,7 +8,6 @@ use crate::formula::{Sought, laws};
 use crate::gram::Column;
 use crate::look::MANY_ROWS;
 use crate::losses::SPEED_SQUARED;
-use crate::noise::Noises;
 use crate::search::{Found, MOST_CAUSES, OTHER_WORDS, TOLERANCE, concluded, worth};
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Trial, add_trial};
@@ -127,7 +126,8 @@ fn candidates(
         let with = |part: &Part| start.iter().cloned().chain([part.clone()]).collect::<Vec<Part>>();
         if let Some(settled) = state.settle(&with(&part), &found.stand.noises)
             && (rows <= MANY_ROWS || worth(&settled) > worth(&found.stand))
-            && let Some(better) = sound_law(case, system, pool, &start, &settled.noises, sought)?
+            && let Some(better) =
+                first_sound(laws(case, system, pool, &start, &settled.noises, sought)?, sought.target)
         {
             law = better;
             part = add(case, system, pool, &law, sought);
@@ -210,7 +210,8 @@ fn beside(
         let terms = state.pieces(&stand) - listed.len();
         if !listed.is_empty()
             && rows <= MANY_ROWS
-            && let Some(law) = sound_law(case, system, pool, &listed, &stand.noises, sought)?
+            && let Some(law) =
+                first_sound(laws(case, system, pool, &listed, &stand.noises, sought)?, sought.target)
             && law.terms <= terms
         {
             let part = add(case, system, pool, &law, sought);
@@ -235,17 +236,9 @@ fn beside(
     Ok(found)
 }
 
-/// The law that is worth it, where it is sound.
-fn sound_law(
-    case: &Case,
-    system: &System,
-    pool: &Pool,
-    beside: &[Part],
-    noises: &Noises,
-    sought: &Sought,
-) -> Result<Option<Law>, DiagnoseError> {
-    let best = laws(case, system, pool, beside, noises, sought)?.into_iter().next();
-    Ok(best.filter(|law| is_sound(law, sought.target)))
+/// The first of some laws, where it is sound.
+fn first_sound(laws: Vec<Law>, target: Target) -> Option<Law> {
+    laws.into_iter().next().filter(|law| is_sound(law, target))
 }
 
 /// Whether a law draws no map, and each of its terms is known.

@@ -23,7 +23,7 @@ pub struct Plan {
     total: u64,
     points: u64,
     strata: Vec<Vec<u32>>,
-    combinations: Vec<Document>,
+    combinations: Vec<Result<Document, ScenarioError>>,
 }
 
 /// One run.
@@ -55,8 +55,12 @@ pub enum Setting {
 impl Plan {
     /// Puts every combination of variant, cycle and ground together and checks it.
     ///
+    /// One whose values make no sense, or whose files cannot be used, is kept as [`Plan::refused`] beside those that can be
+    /// run; its runs become rows with its error. What is written wrongly is an error of the comparison.
+    ///
     /// # Errors
-    /// [`BatchError::Scenario`] and [`BatchError::Combination`] where one cannot be used, [`BatchError::TooMany`].
+    /// [`BatchError::Scenario`] where a piece is written wrongly, [`BatchError::Combination`] where no combination can be
+    /// used, [`BatchError::TooMany`].
     pub fn new(comparison: Comparison, registry: &Registry, seed: u64) -> Result<Self, BatchError> {
         let counts =
             [&comparison.variants, &comparison.cycles, &comparison.grounds].map(|one| one.len() as u128);
@@ -72,17 +76,54 @@ impl Plan {
         for variant in &comparison.variants {
             for cycle in &comparison.cycles {
                 for ground in &comparison.grounds {
-                    combinations.push(combination(&comparison, (variant, cycle, ground), registry)?);
+                    combinations.push(match combination(&comparison, (variant, cycle, ground), registry) {
+                        Ok(document) => Ok(document),
+                        Err(BatchError::Combination { error, .. }) if is_of_values(&error) => Err(error),
+                        Err(other) => return Err(other),
+                    });
                 }
             }
         }
         let strata = comparison.points.strata(seed);
-        Ok(Self { comparison, seed, total, points, strata, combinations })
+        let plan = Self { comparison, seed, total, points, strata, combinations };
+        let first = plan.refused().next().map(|(of, error)| (of, error.clone()));
+        match first.filter(|_| plan.combinations.iter().all(Result::is_err)) {
+            Some((of, error)) => Err(BatchError::Combination { of, error }),
+            None => Ok(plan),
+        }
+    }
+
+    /// Combinations that cannot be run: what each is called, and why.
+    pub fn refused(&self) -> impl Iterator<Item = (String, &ScenarioError)> {
+        let runs = self.points * u64::from(self.comparison.times);
+        self.combinations.iter().enumerate().filter_map(move |(index, one)| {
+            let error = one.as_ref().err()?;
+            Some((self.combination_called(self.spec(index as u64 * runs)), error))
+        })
+    }
+
+    /// Whether the variant, cycle and ground of a run can be put together.
+    pub fn is_possible(&self, spec: Spec) -> bool {
+        self.combinations[self.combination_index(spec)].is_ok()
+    }
+
+    fn combination_called(&self, spec: Spec) -> String {
+        let comparison = &self.comparison;
+        called(
+            &comparison.variants[spec.variant],
+            &comparison.cycles[spec.cycle],
+            &comparison.grounds[spec.ground],
+        )
     }
 
     /// How many runs there are.
     pub fn total(&self) -> u64 {
         self.total
+    }
+
+    /// How many combinations of variant, cycle and ground there are.
+    pub fn combinations(&self) -> usize {
+        self.combinations.len()
     }
 
     /// How many points each combination has.
@@ -135,7 +176,7 @@ impl Plan {
     /// # Errors
     /// [`ScenarioError`] where the values of the run cannot be put in.
     pub fn document(&self, spec: Spec) -> Result<Document, ScenarioError> {
-        let base = &self.combinations[self.combination_index(spec)];
+        let base = self.combinations[self.combination_index(spec)].as_ref().map_err(Clone::clone)?;
         let values = self.comparison.points.at(spec.point, self.seed, &self.strata);
         let moved: Vec<(&str, String)> = self
             .comparison
@@ -197,6 +238,11 @@ fn repeated(own: f64, seed: u64, repetition: u32) -> u64 {
     let hash =
         hash(hash(hash(BASIS, &seed.to_le_bytes()), &own.to_bits().to_le_bytes()), &repetition.to_le_bytes());
     (hash >> 32) ^ (hash & 0xffff_ffff)
+}
+
+/// Whether a value or a file is at fault, rather than how the comparison is written.
+fn is_of_values(error: &ScenarioError) -> bool {
+    matches!(error, ScenarioError::Value { .. } | ScenarioError::Body { .. } | ScenarioError::File { .. })
 }
 
 fn combination(

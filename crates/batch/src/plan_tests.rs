@@ -64,6 +64,31 @@ fn a_value_that_is_not_physical_is_a_row_with_its_error() {
     assert!((row.value("time_s") - 2.0).abs() < 1e-9);
 }
 
+/// One vehicle that is not physical: its runs are rows with the reason, those of the other are run.
+#[test]
+fn a_combination_that_is_not_physical_leaves_the_others() {
+    let plan = plan(&COMPARISON.replacen("mass_kg: 500", "mass_kg: -5", 1)).unwrap();
+    let refused: Vec<String> = plan.refused().map(|(of, error)| format!("{of}: {error}")).collect();
+    assert_eq!(refused.len(), 2);
+    assert!(
+        refused[0].contains("variant `light`, cycle `roll`, ground `road`: `mass_kg` is -5"),
+        "{refused:?}"
+    );
+    assert_eq!(plan.refused().next().unwrap().1.location().unwrap().line, 4);
+    let registry = headland_stock::registry();
+    let (row, _) = run(&plan, &registry, 0);
+    assert_eq!(row.status, Status::Refused);
+    assert!(row.error.contains("`mass_kg` is -5"), "{}", row.error);
+    assert_eq!(run(&plan, &registry, 12).0.status, Status::Finished);
+}
+
+#[test]
+fn a_comparison_that_has_no_combination_to_run_is_refused() {
+    let text = COMPARISON.replacen("mass_kg: 500", "mass_kg: -5", 1).replace("\"1 t\"", "-1");
+    let BatchError::Combination { of, error } = plan(&text).unwrap_err() else { panic!("it was planned") };
+    assert!(of.contains("variant `light`") && error.to_string().contains("`mass_kg` is -5"), "{of}: {error}");
+}
+
 #[test]
 fn seeds_of_models_change_with_the_repetition_and_not_with_the_variant() {
     let text = COMPARISON.replace("air:", "tasks: [(seed: 4)], air:");
@@ -84,7 +109,6 @@ fn mistakes_are_refused_where_they_stand() {
         ("{\"start.speed_m_s\"", "{\"ground.soil\"", "no number", 12),
         ("air:", "vehicle: (mass_kg: 1), air:", "given by variant `light` and by the comparison", 4),
         ("repeat:", "report: (baseline: \"middle\"), repeat:", "no variant is named `middle`", 12),
-        ("mass_kg: 500", "mass_kg: -5", "`mass_kg` is -5", 4),
     ] {
         let text =
             COMPARISON.replacen(from, to, 1).replace("{\"vehicle.mass\": \"1 t\")", "{\"vehicle.mass\": 1}");

@@ -80,6 +80,10 @@ pub struct Summary {
     pub troubles: Vec<(u64, Status, String)>,
 }
 
+/// A correction for charge beyond this share of the fuel burnt is told: SAE J1711 and ISO 23274-1 allow 1 %, of drives on a
+/// dynamometer that repeat themselves.
+const MUCH_MADE_UP: f64 = 0.03;
+
 /// Most configurations that a picture holds.
 const MOST_CHOICES: u64 = 4000;
 /// Most troubles that a page tells.
@@ -331,6 +335,12 @@ impl Gathered {
 }
 
 impl Cell {
+    /// What making up for the charge adds to the fuel burnt, as a share of that, where it is so much that the fuel is more of the
+    /// correction than of the runs.
+    pub fn much_made_up(&self) -> Option<f64> {
+        Some(self.made_up.mean).filter(|share| share.abs() > MUCH_MADE_UP)
+    }
+
     fn take(&mut self, row: &Row, all: &[f64]) {
         self.measures.iter_mut().zip(all).for_each(|(one, value)| one.add(*value));
         for (name, energy_j) in &row.values {

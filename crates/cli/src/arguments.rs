@@ -50,6 +50,8 @@ pub enum Command {
     Coastdown(CoastdownOptions),
     /// Run many variants, cycles and grounds and compare them
     Batch(BatchOptions),
+    /// Measure the management of a hybrid against the course of least fuel
+    Optimum(OptimumOptions),
     /// Make the map of engine speeds of a `MappedCvt` from a recording
     CvtMap(CvtMapOptions),
     /// Draw the ground of a scenario and the path over it
@@ -187,6 +189,26 @@ pub struct BatchOptions {
     /// Pictures
     #[command(flatten)]
     pub picture: RerunOptions,
+}
+
+/// Options of `headland optimum`.
+#[derive(Args, Debug)]
+pub struct OptimumOptions {
+    /// The scenario, of a vehicle with a `management`
+    #[arg(value_name = "SCENARIO.ron")]
+    pub scenario: PathBuf,
+    /// Where results are put
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Length of the steps in which power is shared, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.0)]
+    pub step: f64,
+    /// Charges of the grid
+    #[arg(long, value_name = "N", default_value_t = 641)]
+    pub charges: usize,
+    /// Powers of the engine that are tried in every step
+    #[arg(long, value_name = "N", default_value_t = 40)]
+    pub levels: usize,
 }
 
 /// Options of `headland cvt-map`.

@@ -88,6 +88,7 @@ fn begin(registry: &Registry, arguments: &Arguments, say: Say) -> Result<(), Fai
         }
         Command::Coastdown(options) => command::coastdown::coastdown(options, arguments.common.seed, say),
         Command::Batch(options) => command::batch::batch(registry, options, arguments.common.seed, say),
+        Command::Optimum(options) => command::optimum::optimum(registry, options, say),
         Command::CvtMap(options) => command::cvt_map::run(options, say),
         Command::Terrain(options) => command::terrain::terrain(registry, options, say),
         Command::Demo(options) => command::demo::demo(registry, options, arguments.common.seed, say),

@@ -15,5 +15,7 @@ mod help;
 mod interruption;
 #[path = "cli/large.rs"]
 mod large;
+#[path = "cli/optimum.rs"]
+mod optimum;
 #[path = "cli/scenarios.rs"]
 mod scenarios;

@@ -1,6 +1,7 @@
 //! Sharing of power between an engine and a second store: one file each, and the optimum that they are measured against.
 
 mod adaptive_ecms;
+mod demanded;
 mod ecms;
 mod least;
 mod load_levelling;
@@ -10,6 +11,7 @@ mod plant;
 mod thresholds;
 
 pub use adaptive_ecms::AdaptiveEcms;
+pub use demanded::{Demanded, Fineness, Managed, NotShared};
 pub use ecms::Ecms;
 pub use load_levelling::LoadLevelling;
 pub use optimum::{Course, Grid, Optimum, Unreachable, optimum};

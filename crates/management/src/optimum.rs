@@ -10,9 +10,10 @@
 //! grid, values between are linear. The weight w makes missing charge dearer than any fuel that could have made it.
 
 use headland_plugin::{Consequence, Share};
+use rayon::prelude::*;
 
 /// A course as dynamic programming sees it: demands one after the other, each for one step.
-pub trait Course {
+pub trait Course: Sync {
     /// How many steps.
     fn steps(&self) -> usize;
 
@@ -91,7 +92,7 @@ pub fn optimum(course: &dyn Course, start: f64, end: f64, grid: Grid) -> Result<
     let mut values: Vec<Vec<f64>> = vec![last];
     for step in (0..course.steps()).rev() {
         let next = &values[values.len() - 1];
-        let here = (0..grid.charges).map(|i| {
+        let here = (0..grid.charges).into_par_iter().map(|i| {
             let charge = least + spacing * i as f64;
             best(course, step, charge, &grid, next).1
         });

@@ -14,6 +14,7 @@ mod cycle;
 #[cfg(test)]
 mod cycle_tests;
 mod deciding;
+mod demanded;
 mod driving;
 #[cfg(test)]
 mod effect_tests;
@@ -41,6 +42,7 @@ mod wheels;
 
 pub use axles::{Axle, Axles};
 pub use carriage::{AxleMotion, Carriage, Motion, Push, Stepped};
+pub use demanded::demands;
 pub use ledger::{Entry, Ledger};
 pub use model::{Model, Named, Resistance, Vehicle};
 pub use plan::{Cycle, Driven, EngineSpeed, Guard, Phase, Pi, Setting, Start, Until, speed_not_kept};

@@ -34,6 +34,8 @@ struct Configuration {
     ground: String,
     finished: u64,
     unfinished: u64,
+    /// What making up for the charge adds to the fuel burnt, as a share of that.
+    charge_made_up: Option<f64>,
     measures: Vec<Measured>,
 }
 
@@ -104,6 +106,14 @@ pub fn run(
     say: Say,
 ) -> Result<Done, Failure> {
     let plan = Plan::new(comparison, registry, seed)?;
+    if let Some((of, error)) = plan.refused().next() {
+        let count = plan.refused().count();
+        say.progress(&format!(
+            "note: {count} of {} combinations cannot be run and will be rows with their error; the first is {of}:\n{}",
+            plan.combinations(),
+            error.told()
+        ));
+    }
     let identity = plan.comparison.identity(seed);
     let mut journal = match Journal::open(output.path(), &identity, plan.total(), anew) {
         Err(BatchError::File { path, source }) => return Err(Failure::unwritable(&path, &source)),
@@ -203,6 +213,7 @@ fn document(plan: &Plan, summary: &Summary) -> Document {
                 ground: comparison.grounds[cell.ground].name.clone(),
                 finished: cell.finished,
                 unfinished: cell.unfinished,
+                charge_made_up: (cell.made_up.count > 0).then_some(cell.made_up.mean),
                 measures: present.iter().filter_map(|index| measured(cell, *index)).collect(),
             })
             .collect(),
@@ -214,6 +225,8 @@ fn document(plan: &Plan, summary: &Summary) -> Document {
     }
 }
 
+/// Notes of the text; the page has all.
+const MOST_NOTES: usize = 6;
 /// Measures of the text; the page has all.
 const IN_TEXT: usize = 4;
 
@@ -242,6 +255,11 @@ fn text(done: &Done, output: &Output) -> String {
                 let _ = writeln!(text, "    {name:<14} {}{short}", values.join("  "));
             }
         }
+    }
+    let notes: Vec<String> =
+        summary.cells.iter().filter_map(|cell| page::batch::much_made_up(plan, cell)).collect();
+    for note in notes.iter().take(MOST_NOTES) {
+        let _ = writeln!(text, "  note     {note}");
     }
     let _ = writeln!(text, "  written  {}", output.told());
     let _ = writeln!(text, "open {}", Path::new(output.path()).join("report.html").display());

@@ -72,6 +72,9 @@ fn check_one(registry: &Registry, path: &Path) -> Checked {
 /// A comparison is checked with every scenario that it stands for.
 fn planned(registry: &Registry, path: &Path) -> Result<(String, Vec<String>), Failure> {
     let plan = Plan::new(Comparison::read(path)?, registry, 0)?;
+    if let Some((of, error)) = plan.refused().next() {
+        return Err(Failure::Input(format!("{of}:\n{}", error.told())));
+    }
     Ok((format!("{} ({} runs)", plan.comparison.about, plan.total()), Vec::new()))
 }
 

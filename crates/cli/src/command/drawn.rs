@@ -29,8 +29,17 @@ pub fn numbers(plan: &Plan, asked: &[u64]) -> Result<Vec<u64>, Failure> {
     if !asked.is_empty() {
         return Ok(asked.to_vec());
     }
-    let first = |variant| Spec { number: 0, variant, cycle: 0, ground: 0, point: 0, repetition: 0 };
-    Ok((0..plan.comparison.variants.len()).take(DRAWN).map(|variant| plan.number(first(variant))).collect())
+    Ok((0..plan.comparison.variants.len()).filter_map(|variant| first(plan, variant)).take(DRAWN).collect())
+}
+
+/// The first run of a variant, in the first cycle and on the first ground that it can be put together with.
+fn first(plan: &Plan, variant: usize) -> Option<u64> {
+    let (cycles, grounds) = (plan.comparison.cycles.len(), plan.comparison.grounds.len());
+    (0..cycles)
+        .flat_map(|cycle| (0..grounds).map(move |ground| (cycle, ground)))
+        .map(|(cycle, ground)| Spec { number: 0, variant, cycle, ground, point: 0, repetition: 0 })
+        .find(|spec| plan.is_possible(*spec))
+        .map(|spec| plan.number(spec))
 }
 
 /// Simulates the runs again, which gives the same bits, with all their channels.

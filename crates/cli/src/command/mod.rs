@@ -9,6 +9,7 @@ pub mod cvt_map;
 pub mod demo;
 pub mod diagnose;
 mod drawn;
+pub mod optimum;
 pub mod plugins;
 pub mod run;
 pub mod schema;

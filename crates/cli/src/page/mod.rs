@@ -7,6 +7,7 @@ pub mod compare;
 pub mod diagnose;
 mod energy;
 mod motion;
+pub mod optimum;
 pub mod run;
 mod wheels;
 

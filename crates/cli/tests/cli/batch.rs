@@ -370,4 +370,60 @@ fn the_page_tells_where_there_is_no_choice_and_how_much_fuel_is_made_up() {
     );
     assert!(page.contains("made up for, of the fuel burnt"));
     assert!(page.contains("Time against fuel: transport"));
+    // What the demonstration compares is fuel, not its own correction.
+    let summary = place.json("out/summary.json");
+    for one in summary["configurations"].as_array().unwrap() {
+        assert!(one["charge_made_up"].as_f64().is_none_or(|share| share.abs() < 0.03), "{one}");
+    }
+    assert!(!page.contains("is the correction for charge"));
+}
+
+/// The battery of a hybrid gives a good part of the work: its fuel leans on the correction, and page and terminal say so.
+#[test]
+fn fuel_that_is_mostly_correction_is_told_as_such() {
+    let place = Place::new();
+    let out = place.path("first");
+    let mut demo = headland();
+    demo.args(["demo", "batch", "--quiet", "--out", &out]);
+    assert_eq!(status(demo).0, Some(0));
+    let short = r#"(
+        about: "a short pull",
+        variants: [(name: "series", vehicle: include("vehicles/xerion_3800_series.ron"),
+            with: {"vehicle.management": LoadLevelling(
+                time_constant_s: 20, target_charge: 0.4, charge_gain_w: "200 kW", initial_power_w: "30 kW")})],
+        cycles: [(name: "pull", cycle: [Hold(for_s: 60)])],
+        grounds: [
+            (name: "loam", ground: (terrain: Flat, soil: Constant(coefficient: 0.05))),
+            (name: "nowhere", ground: (terrain: Flat, soil: Constant(coefficient: -0.05))),
+        ],
+        start: (position_m: 0, speed_m_s: "8 km/h"),
+        tasks: [Drawbar(force_n: "20 kN")],
+        air: (density_kg_m3: 1.2),
+        charge: (charging_efficiency: 0.85, discharging_efficiency: 0.85),
+        simulation: (fidelity: Longitudinal, step_s: 0.1),
+    )"#;
+    std::fs::write(place.path("first/scenarios/short.ron"), short).unwrap();
+    let mut batch = headland();
+    let out = place.path("second");
+    batch.args(["batch", &place.path("first/scenarios/short.ron"), "--out", &out]);
+    let output = output(batch);
+    let (told, noted) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.status.code(), Some(1), "{told}{noted}");
+    assert!(told.contains("series, pull, loam") && told.contains("is the correction for charge"), "{told}");
+    assert!(
+        noted.contains("1 of 2 combinations cannot be run") && noted.contains("`coefficient` is -0.05"),
+        "{noted}"
+    );
+    let page = String::from_utf8(bytes(&place, "second/report.html")).unwrap();
+    assert!(
+        page.contains("is the correction for charge")
+            && page.contains("Runs without an end")
+            && page.contains("is -0.05")
+    );
+    let check = status({
+        let mut check = headland();
+        check.args(["check", &place.path("first/scenarios/short.ron")]);
+        check
+    });
+    assert_eq!(check.0, Some(1));
 }

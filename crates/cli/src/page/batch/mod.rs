@@ -5,6 +5,8 @@ mod pareto;
 mod sensitivity;
 mod tables;
 
+pub use tables::much_made_up;
+
 use crate::command::batch::counted;
 use crate::failure::Failure;
 use crate::page::short;

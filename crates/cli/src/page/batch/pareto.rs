@@ -42,8 +42,14 @@ impl Content<'_> {
         wanted.retain(|index| better(index).is_some() && varies(&column(*index)));
         let x = *wanted.first()?;
         // Carbon dioxide against fuel is a straight line and no choice.
-        let y =
-            *wanted.iter().skip(1).find(|index| correlation(&column(x), &column(**index)).abs() < 0.999)?;
+        let mut others = wanted.iter().skip(1);
+        let Some(&y) = others.find(|index| correlation(&column(x), &column(**index)).abs() < 0.999) else {
+            return Some(Section::new("Choices").words(format!(
+                "{} alone is left to choose by: nothing else that is measured differs by a thousandth without following \
+                 from it.",
+                super::capital(&self.axis(x).label)
+            )));
+        };
         let sign = |index: usize| if better(&index) == Some(true) { -1.0 } else { 1.0 };
         let mut section = Section::new("Choices").words(
             "Each point is a configuration, the mean of its repetitions. No other configuration is better in both by the \

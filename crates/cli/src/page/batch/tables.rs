@@ -2,7 +2,7 @@
 
 use super::Content;
 use crate::page::short;
-use headland_batch::{Measure, Statistics};
+use headland_batch::{Measure, Plan, Statistics};
 use headland_report::{Axis, Cell, Item, Section, Table};
 
 /// Columns of the table of results, as far as they are there.
@@ -124,7 +124,14 @@ impl Content<'_> {
             columns.extend([Axis::new("by the line", axis.unit), Axis::new("R² of the line", "")]);
         }
         let table = Table { title: "Charge".to_owned(), columns, rows: rows.collect() };
-        Some(Section::new("State of charge").words(words).with(table))
+        let section = Section::new("State of charge").words(words).with(table);
+        let much = self.much_made_up();
+        Some(if much.is_empty() { section } else { section.with(Item::Sentences(much)) })
+    }
+
+    /// A sentence for each configuration whose fuel leans on the correction for charge.
+    fn much_made_up(&self) -> Vec<String> {
+        self.summary.cells.iter().filter_map(|cell| much_made_up(self.plan, cell)).collect()
     }
 
     /// Runs that did not reach the end of their cycle.
@@ -150,6 +157,20 @@ impl Content<'_> {
         };
         Some(Section::new("Runs without an end").words(words).with(Item::Sentences(sentences)))
     }
+}
+
+/// What is to be said where the fuel of a configuration leans on the correction for charge.
+pub fn much_made_up(plan: &Plan, cell: &headland_batch::Cell) -> Option<String> {
+    let share = cell.much_made_up()?;
+    let comparison = &plan.comparison;
+    Some(format!(
+        "{}, {}, {}: {:.1} % of the fuel burnt is the correction for charge, so its fuel is not known better than that \
+         correction; a longer cycle, or a management that keeps the charge, makes it smaller",
+        comparison.variants[cell.variant].name,
+        comparison.cycles[cell.cycle].name,
+        comparison.grounds[cell.ground].name,
+        100.0 * share
+    ))
 }
 
 /// A mean, with its standard deviation where there is one worth the ink.

@@ -26,6 +26,8 @@ mod scenarios;
 mod schema;
 #[path = "whole/snippets.rs"]
 mod snippets;
+#[path = "whole/soil_files.rs"]
+mod soil_files;
 #[path = "whole/terrain_files.rs"]
 mod terrain_files;
 #[path = "whole/terrain_formulas.rs"]

@@ -10,16 +10,28 @@ use std::path::Path;
 const LEVELLING: &str =
     "LoadLevelling(time_constant_s: 8, target_charge: 0.55, charge_gain_w: 400e3, initial_power_w: 150e3)";
 
+/// The engine runs throughout; its store assists from so far on that it is left alone at nine tenths.
+const THRESHOLDS: &str = "Thresholds(start_power_w: 60e3, stop_power_w: 20e3, assist_power_w: 254e3, charge_below: 0.4, \
+                          charge_until: 0.6, charging_power_w: 20e3, least_time_s: 20)";
+
+const ECMS: &str =
+    "Ecms(equivalence_discharge: 2.9, equivalence_charge: 2.6, target_charge: 0.55, least_time_s: 10)";
+
 const ADAPTIVE: &str = "AdaptiveEcms(equivalence: 2.55, proportional_gain: 30, integral_gain_per_s: 0.002, \
                         target_charge: 0.55, least_time_s: 10)";
 
 /// A vehicle of the project at a steady speed with a steady pull.
 fn steady(vehicle: &str, speed_km_h: f64, pull_n: f64, with: &[(&str, String)]) -> Outcome {
+    steady_for(120.0, vehicle, speed_km_h, pull_n, with)
+}
+
+/// The same for so many seconds.
+fn steady_for(time_s: f64, vehicle: &str, speed_km_h: f64, pull_n: f64, with: &[(&str, String)]) -> Outcome {
     let text = format!(
         "(about: \"steady\", vehicle: include(\"vehicles/{vehicle}.ron\"),
           ground: (terrain: Flat, soil: Constant(coefficient: 0.06)), air: (density_kg_m3: 1.2),
           start: (position_m: 0, speed_m_s: \"{speed_km_h} km/h\"), tasks: [Drawbar(force_n: {pull_n})],
-          cycle: [Hold(for_s: 120)], simulation: (fidelity: Longitudinal, step_s: 0.1))"
+          cycle: [Hold(for_s: {time_s})], simulation: (fidelity: Longitudinal, step_s: 0.1))"
     );
     run(&text, with)
 }
@@ -58,22 +70,29 @@ fn mean(outcome: &Outcome, channel: &str) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
+/// So long that what a battery of 18 kWh gives or takes is little of the fuel, and the windings of a series hybrid do not derate yet.
+const LONG_S: f64 = 300.0;
+
 /// 62 kN at 10 km/h load the engine of the transmission's tractor to about nine tenths.
 #[test]
 fn no_hybrid_saves_more_than_a_twentieth_at_nine_tenths_of_the_load() {
-    let mechanical = steady("xerion_3800_cvt", 10.0, 62e3, &[alike()]);
+    let mechanical = steady_for(LONG_S, "xerion_3800_cvt", 10.0, 62e3, &[alike()]);
     let power = mean(&mechanical, "engine_speed_rad_s") * mean(&mechanical, "engine_torque_n_m");
     assert!((0.87..0.93).contains(&(power / 254e3)), "{power}");
     let mut table = String::from(
         "| hybrid | management | fuel of the CVT | charge, of the fuel |\n|---|---|---:|---:|\n",
     );
-    for (vehicle, management) in [
-        ("xerion_3800_parallel", ADAPTIVE.to_owned()),
-        ("xerion_3800_parallel", LEVELLING.to_owned()),
-        ("xerion_3800_series", LEVELLING.to_owned()),
-        ("xerion_3800_power_split", LEVELLING.replace("0.55", "0.8")),
-    ] {
-        let hybrid = steady(vehicle, 10.0, 62e3, &[alike(), ("vehicle.management", management.clone())]);
+    let hybrids = [("parallel", 0.55), ("series", 0.55), ("power_split", 0.8)];
+    let all = hybrids.into_iter().flat_map(|(name, charge)| {
+        [THRESHOLDS, LEVELLING, ECMS, ADAPTIVE].map(|management| {
+            let charge = format!("target_charge: {charge}");
+            (format!("xerion_3800_{name}"), management.replace("target_charge: 0.55", &charge))
+        })
+    });
+    for (vehicle, management) in all {
+        let vehicle = vehicle.as_str();
+        let hybrid =
+            steady_for(LONG_S, vehicle, 10.0, 62e3, &[alike(), ("vehicle.management", management.clone())]);
         assert_eq!(hybrid.end, End::Finished, "{vehicle}");
         let apart = hybrid.trace.get("speed_m_s").unwrap().last().unwrap() * 3.6 - 10.0;
         assert!(apart.abs() < 0.01, "{vehicle} falls behind by {apart} km/h");
@@ -88,8 +107,8 @@ fn no_hybrid_saves_more_than_a_twentieth_at_nine_tenths_of_the_load() {
             100.0 * share
         );
         assert!((0.95..1.2).contains(&share), "{vehicle}: {share} of the fuel of the transmission");
-        // A factor that is wrong by a tenth is then wrong by less than two hundredths of the fuel.
-        assert!(gained_j(&hybrid).abs() < 0.07 * hybrid.ledger.source_j, "{vehicle}: {}", gained_j(&hybrid));
+        // A factor that is wrong by a tenth is then wrong by two and a half hundredths of the fuel at most.
+        assert!(gained_j(&hybrid).abs() < 0.09 * hybrid.ledger.source_j, "{vehicle}: {}", gained_j(&hybrid));
     }
     evidence::holds("hybrids.md", "nine-tenths", &table);
 }
@@ -134,6 +153,25 @@ fn state_of_charge_closes() {
         assert!((715.0..759.0).contains(&volts), "{vehicle}: {volts} V");
         assert!(outcome.ledger.relative_residual() < 1e-9, "{vehicle}: {:?}", outcome.ledger);
     }
+}
+
+/// The same of a supercapacitor of 16 F and 750 V: I = −C dU/dt, and half of C U² is its energy.
+#[test]
+fn the_charge_of_a_supercapacitor_closes() {
+    const CAPACITANCE_F: f64 = 16.0;
+    const MOST_V: f64 = 750.0;
+    let levelling = LEVELLING.replace("target_charge: 0.55", "target_charge: 0.7");
+    let outcome = steady("xerion_3800_power_split", 8.0, 20e3, &[("vehicle.management", levelling)]);
+    let trace = &outcome.trace;
+    let (time, charge) = (trace.time_s(), trace.get("state_of_charge").unwrap());
+    let current = trace.get("battery_current_a").unwrap();
+    let drawn: f64 = time.windows(2).zip(current).map(|(pair, current)| (pair[1] - pair[0]) * current).sum();
+    let (first, last) = (charge[0] * MOST_V, charge[charge.len() - 1] * MOST_V);
+    assert!((first - last).abs() > 20.0, "{first} {last}");
+    assert!((drawn / (CAPACITANCE_F * (first - last)) - 1.0).abs() < 5e-3, "{drawn} {first} {last}");
+    let energy = 0.5 * CAPACITANCE_F * (last * last - first * first);
+    assert!((gained_j(&outcome) / energy - 1.0).abs() < 1e-3, "{} {energy}", gained_j(&outcome));
+    assert!(outcome.ledger.relative_residual() < 1e-9, "{:?}", outcome.ledger);
 }
 
 #[test]

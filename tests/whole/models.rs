@@ -4,6 +4,7 @@
 
 use crate::root;
 use headland_plugin::{Bound, Card, Kind, Parameter};
+use headland_task::{IMPLEMENTS, MACHINES, MACHINES_SOURCE, Per};
 use std::fmt::Write;
 
 const HEAD: &str = "# The models that scenarios can name
@@ -35,8 +36,61 @@ fn pages() -> Vec<(String, String)> {
         }
         pages.push((name, page));
     }
+    list.push_str(TABLES);
+    pages.push(("plugins/implements.md".to_owned(), implements()));
     pages.push(("plugins.md".to_owned(), list));
     pages
+}
+
+const TABLES: &str = "
+## Tables
+
+- [Implements and machines](plugins/implements.md): what `Tillage`, `Rotary`, `Harvester` and `Spreader` know by name, and from where
+";
+
+/// What tasks know by name.
+fn implements() -> String {
+    let mut page = "# Implements and machines
+
+Made from the tables of the program. [All models](../plugins.md)
+
+The standard itself was not at hand: each row says whether its numbers were seen in public code that cites it or come from
+memory. Either is a default to be overridden by what was measured; *spread* is what the standard says of its own rows.
+
+## Implements of `Tillage`
+
+D = F (A + B S + C S²) W T, with D in N, S in km/h and T in cm; W is the width in m or the number of tools or rows; T is 1 where the depth
+does not count. F is that of fine, medium and coarse soil.
+
+| implement | A | B | C | F fine, medium, coarse | W counts | depth counts | spread ± % | numbers |
+|---|---:|---:|---:|---|---|---|---:|---|
+"
+    .to_owned();
+    for row in &IMPLEMENTS {
+        let ([a, b, c], [fine, medium, coarse]) = (row.abc, row.factors);
+        let per = if row.per == Per::Metre { "metres" } else { "tools" };
+        let deep = if row.deep { "yes" } else { "no" };
+        let _ = writeln!(
+            page,
+            "| `{}` | {a} | {b} | {c} | {fine}, {medium}, {coarse} | {per} | {deep} | {} | {} |",
+            row.name, row.spread_percent, row.source
+        );
+    }
+    let _ = write!(
+        page,
+        "
+## Machines of `Rotary`, `Harvester` and `Spreader`
+
+P = a + b W + c F, with P in kW, the width W in m and the flow F in t/h. All rows: {MACHINES_SOURCE}; spread ±25 to ±50 %.
+
+| machine | a kW | b kW/m | c kW h/t |
+|---|---:|---:|---:|
+"
+    );
+    for (name, power) in &MACHINES {
+        let _ = writeln!(page, "| `{name}` | {} | {} | {} |", power.a, power.b, power.c);
+    }
+    page
 }
 
 fn title(kind: Kind) -> &'static str {

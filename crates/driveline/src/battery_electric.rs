@@ -65,7 +65,8 @@ impl Plugin for BatteryElectric {
         about: "a battery or a supercapacitor by its open-circuit voltage, a motor by its losses and its temperature, and gears",
         equation: "F = T i η^(±1) / r; ω = i v / r; P_b = T ω + k_c T² + k_i ω + k_w ω³ + k_0 + consumers + P_shaft / η_s; \
                    I = (U − √(U² − 4 R P)) / (2 R); dS/dt = −I / (3600 Q); C dθ/dt = losses − G (θ − θ_coolant)",
-        source: "Guzzella and Sciarretta, Vehicle Propulsion Systems (2013), sections 4.3 to 4.5",
+        source: "Guzzella and Sciarretta, Vehicle Propulsion Systems (2013), sections 4.3 to 4.5; usual values of machine, \
+                 battery and gears from memory",
         validity: "quasi-steady; leaves out ageing and temperature of the battery, and what a change of gear takes",
         parameters: &PARAMETERS,
     };

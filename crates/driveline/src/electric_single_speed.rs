@@ -54,7 +54,7 @@ impl Plugin for ElectricSingleSpeed {
         about: "a battery with internal resistance, one motor with limits of torque and power, and a fixed gear",
         equation: "F = T i η_g^(±1) / r; P_b = T ω η^(∓1) + P_standby + P_aux; I = (U − √(U² − 4 R P_b)) / (2R); \
                    dS/dt = −I / (3600 Q); U = U₀ + U₁ (S − ½)",
-        source: "Guzzella and Sciarretta, Vehicle Propulsion Systems (2013), sections 4.3 and 4.5",
+        source: "Guzzella and Sciarretta, Vehicle Propulsion Systems (2013), sections 4.3 and 4.5; usual values from memory",
         validity: "quasi-steady; leaves out temperature, ageing, efficiency by load, and friction brakes",
         parameters: &[
             parameter("open_circuit_voltage_v", "V", "of the battery at half charge, U₀")

@@ -76,7 +76,7 @@ impl Plugin for EngineByPower {
         about: "an engine by its efficiency over power, behind a transmission of one efficiency that does not push back",
         equation: "P_f = max(P / η(P / P_max), P_idle); P = F v / η_t + P_acc + P_el / η_alt + P_shaft, without F v where it is \
                    negative",
-        source: "Guzzella and Sciarretta, Vehicle Propulsion Systems (2013), section 3.1",
+        source: "Guzzella and Sciarretta, Vehicle Propulsion Systems (2013), section 3.1; usual values from memory",
         validity: "quasi-steady; knows no speeds and no torques; leaves out overrun, boost and shifts",
         parameters: &PARAMETERS,
     };

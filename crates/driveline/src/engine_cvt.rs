@@ -52,7 +52,7 @@ impl Plugin for EngineCvt {
         about: "a four-stroke engine by its Willans line behind an ideal continuously variable transmission",
         equation: "p_me = e p_mf − p_me0; P_e = F v η^(∓1) + P_acc + P_alt + P_shaft; λ T_full(ω) ω = P_e",
         source: "Guzzella and Onder, Introduction to Modeling and Control of Internal Combustion Engine Systems (2010), \
-                 section 2.5; Renius, Fundamentals of Tractor Design (2020), chapter 5",
+                 section 2.5; Renius, Fundamentals of Tractor Design (2020), chapter 5; usual values from memory",
         validity: "quasi-steady; leaves out turbo lag, shifts, losses without load and limits of the ratio",
         parameters: &[
             parameter("displacement_m3", "m³", "swept volume, V_d")

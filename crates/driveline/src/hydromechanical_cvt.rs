@@ -35,7 +35,8 @@ impl Plugin for HydromechanicalCvt {
                    P_in = a_j T_out ω_e + T_p ω_p + T_spin ω_e + (1 − η_z) (|a_j T_out ω_e| + |b_j T_out ω_m|); \
                    T_f = C_d V μ |ω| + C_f V |Δp| + T_c; T_out = F r / (i_f η_a^(±1))",
         source: "Renius, Fundamentals of Tractor Design (2020), chapter 5; Wilson, Positive-Displacement Pumps and Fluid Motors \
-                 (1950); Guzzella and Onder, Introduction to Modeling and Control of Internal Combustion Engine Systems (2010)",
+                 (1950); Guzzella and Onder, Introduction to Modeling and Control of Internal Combustion Engine Systems (2010); \
+                 usual values of engine and transmission from memory",
         validity: "quasi-steady; leaves out inertia of the engine, oil temperature, and time and heat of a change of range",
         parameters: &PARAMETERS,
     };

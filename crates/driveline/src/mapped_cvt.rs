@@ -107,7 +107,7 @@ impl Plugin for MappedCvt {
         about: "an engine behind a continuously variable transmission whose engine speed is a map of speed and force",
         equation: "ω = map(v, F); P_in = F v η^(∓1) + T_0 ω",
         source: "Renius, Fundamentals of Tractor Design (2020), chapter 5; Guzzella and Onder, Introduction to Modeling and \
-                 Control of Internal Combustion Engine Systems (2010)",
+                 Control of Internal Combustion Engine Systems (2010); usual values from memory",
         validity: "where the map was seen, and nowhere else; quasi-steady",
         parameters: &PARAMETERS,
     };

@@ -62,7 +62,8 @@ impl Topology for Parallel {
                 supercapacitor",
         equation: "P_e + P_m = P_in + P_shaft; ω_m = i_m ω; P_el = T_m ω_m + k_c T_m² + k_i ω_m + k_w ω_m³ + k_0; \
                    I = (U − √(U² − 4 R P)) / (2 R); dS/dt = −I / (3600 Q); P_in as of `HydromechanicalCvt`",
-        source: "Guzzella and Sciarretta, Vehicle Propulsion Systems (2013), sections 4.2, 4.4 and 4.5",
+        source: "Guzzella and Sciarretta, Vehicle Propulsion Systems (2013), sections 4.2, 4.4 and 4.5; usual values of engine, \
+                 machines, battery and gears from memory",
         validity: "with a management; quasi-steady; leaves out starts of the engine, ageing and temperature of the battery",
         parameters: &PARAMETERS,
     };

@@ -142,7 +142,8 @@ impl Topology for PowerSplit {
         equation: "ω_s = (1 + k) ω_e − k ω_r; T_s = T_c / (1 + k); T_r = k T_c / (1 + k); T_c = (P_e − P_shaft) / ω_e; \
                    T_r + i_m T_m = F r / (i_f η^(±1)); P_el = T ω + k_c T² + k_i ω + k_w ω³ + k_0; \
                    I = (U − √(U² − 4 R P)) / (2 R); dS/dt = −I / (3600 Q)",
-        source: "Guzzella and Sciarretta, Vehicle Propulsion Systems (2013), sections 4.2, 4.4 and 4.5",
+        source: "Guzzella and Sciarretta, Vehicle Propulsion Systems (2013), sections 4.2, 4.4 and 4.5; usual values of engine, \
+                 machines, battery and gears from memory",
         validity: "with a management; quasi-steady; one range; leaves out losses of the planetary, starts of the engine, ageing and \
                    temperature of the battery",
         parameters: &PARAMETERS,

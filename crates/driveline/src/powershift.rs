@@ -88,7 +88,7 @@ impl Plugin for Powershift {
         equation: "T_c = F r η^(∓1) / i + T_0; ω_c = i v / r; P_e = (T_c + J dω_e/dt) ω_e; \
                    ω_e = max(ω_c, ω_launch) (1 + (s − 1) (1 − t / t_s)) after a shift by the step s",
         source: "Renius, Fundamentals of Tractor Design (2020), chapter 5; Guzzella and Onder, Introduction to Modeling and \
-                 Control of Internal Combustion Engine Systems (2010)",
+                 Control of Internal Combustion Engine Systems (2010); usual values from memory",
         validity: "quasi-steady; the engine's inertia counts in shifts; leaves out dead time",
         parameters: &PARAMETERS,
     };

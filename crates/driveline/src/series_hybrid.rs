@@ -72,7 +72,8 @@ impl Topology for Series {
         about: "an engine that drives a generator, and a motor that drives the wheels, with a battery or a supercapacitor between",
         equation: "P_e = P_g + P_shaft; P_b = P_el,m − P_el,g + consumers; ω_m = i v / r; ω_g = i_g ω_e; \
                    P_el = T ω + k_c T² + k_i ω + k_w ω³ + k_0; I = (U − √(U² − 4 R P)) / (2 R); dS/dt = −I / (3600 Q)",
-        source: "Guzzella and Sciarretta, Vehicle Propulsion Systems (2013), sections 4.2, 4.4 and 4.5",
+        source: "Guzzella and Sciarretta, Vehicle Propulsion Systems (2013), sections 4.2, 4.4 and 4.5; usual values of engine, \
+                 machines, battery and gears from memory",
         validity: "with a management; quasi-steady; leaves out starts of the engine, ageing and temperature of the battery",
         parameters: &PARAMETERS,
     };

@@ -34,7 +34,8 @@ impl Plugin for AdaptiveEcms {
         name: "AdaptiveEcms",
         about: "equivalent consumption whose factor follows the charge",
         equation: "min P_f + s P_b over P_e; s = s₀ + k_p (S_t − S) + k_i ∫(S_t − S) dt",
-        source: "Onori, Serrao and Rizzoni, Hybrid Electric Vehicles (2016), chapter 6; Musardo et al., A-ECMS (2005)",
+        source: "Onori, Serrao and Rizzoni, Hybrid Electric Vehicles (2016), chapter 6; Musardo et al., A-ECMS (2005); usual \
+                 values from memory",
         validity: "work that lasts longer than the charge takes to settle; costs a look at each level in every step",
         parameters: &[
             parameter("equivalence", "1", "fuel energy that stored energy is worth at the start, s₀")

@@ -38,7 +38,8 @@ impl Plugin for Ecms {
         about: "equivalent consumption: the sharing is taken that costs least with a price on what the store gives",
         equation: "min P_f + s p(S) P_b over P_e; p(S) = 1 − (2 (S − S_t) / (S_max − S_min))³",
         source: "Paganelli et al., Equivalent consumption minimization strategy for parallel hybrid powertrains (2002); \
-                 Onori, Serrao and Rizzoni, Hybrid Electric Vehicles (2016), chapter 6",
+                 Onori, Serrao and Rizzoni, Hybrid Electric Vehicles (2016), chapter 6; \
+                 the exponent of the penalty, and usual values, from memory",
         validity: "charge stays about its target only where the factors fit the work; costs a look at each level in every step",
         parameters: &[
             parameter("equivalence_discharge", "1", "fuel energy that drawn energy is worth, s_dis")

@@ -26,7 +26,8 @@ impl Plugin for LoadLevelling {
         name: "LoadLevelling",
         about: "the engine gives the power that is wanted on average, the store what varies about it",
         equation: "τ dP̄/dt = max(0, P) − P̄; P_e = P̄ + g (S_t − S)",
-        source: "frequency separation; Guzzella and Sciarretta, Vehicle Propulsion Systems (2013), section 7.3",
+        source: "frequency separation; Guzzella and Sciarretta, Vehicle Propulsion Systems (2013), section 7.3; \
+                 the filter of 5 to 20 s that fits tillage, and usual values, from memory",
         validity: "loads that vary about a mean, such as tillage; the engine never stops",
         parameters: &[
             parameter("time_constant_s", "s", "of the average, τ")

@@ -34,7 +34,8 @@ impl Plugin for Thresholds {
         about: "thresholds of power and charge with hysteresis: when the engine runs, and when the store assists",
         equation: "on where P > P_start or S < S_below, off where P < P_stop; P_e = min(P, P_assist), \
                    P + P_charge from S < S_below until S ≥ S_until",
-        source: "rule-based strategies; Guzzella and Sciarretta, Vehicle Propulsion Systems (2013), section 7.3",
+        source: "rule-based strategies; Guzzella and Sciarretta, Vehicle Propulsion Systems (2013), section 7.3; \
+                 usual values from memory",
         validity: "any driveline with an engine and a second store; does not know what its choices cost",
         parameters: &[
             parameter("start_power_w", "W", "the engine starts above this, P_start")

@@ -11,7 +11,8 @@ use headland_plugin::{Refusal, closest};
 
 /// Draft of one kind of implement.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Row {
+pub struct Implement {
+    /// What it is called in a scenario.
     pub name: &'static str,
     /// Coefficients A, B and C.
     pub abc: [f64; 3],
@@ -29,7 +30,7 @@ pub(crate) struct Row {
 
 /// What the draft is proportional to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Per {
+pub enum Per {
     /// Working width [m].
     Metre,
     /// Tools, or rows.
@@ -51,8 +52,8 @@ const fn row(
     per: Per,
     spread_percent: f64,
     source: &'static str,
-) -> Row {
-    Row { name, abc, factors, per, deep: true, spread_percent, source }
+) -> Implement {
+    Implement { name, abc, factors, per, deep: true, spread_percent, source }
 }
 
 const fn seeding(
@@ -62,12 +63,12 @@ const fn seeding(
     per: Per,
     spread_percent: f64,
     source: &'static str,
-) -> Row {
-    Row { name, abc: [pull_n, 0.0, 0.0], factors, per, deep: false, spread_percent, source }
+) -> Implement {
+    Implement { name, abc: [pull_n, 0.0, 0.0], factors, per, deep: false, spread_percent, source }
 }
 
 /// Every implement.
-pub(crate) const TABLE: [Row; 20] = [
+pub const IMPLEMENTS: [Implement; 20] = [
     row("subsoiler", [226.0, 0.0, 1.8], DEEP, Per::Tool, 50.0, SEEN),
     row("moldboard plough", [652.0, 0.0, 5.1], DEEP, Per::Metre, 40.0, SEEN),
     row("chisel plough, straight points", [91.0, 5.4, 0.0], TINES, Per::Tool, 50.0, PARTLY),
@@ -94,9 +95,9 @@ pub(crate) const TABLE: [Row; 20] = [
 ///
 /// # Errors
 /// [`Refusal`] of `implement` names those that are known.
-pub(crate) fn find(name: &str) -> Result<Row, Refusal> {
-    TABLE.iter().find(|row| row.name == name).copied().ok_or_else(|| {
-        let names: Vec<&str> = TABLE.iter().map(|row| row.name).collect();
+pub(crate) fn find(name: &str) -> Result<Implement, Refusal> {
+    IMPLEMENTS.iter().find(|row| row.name == name).copied().ok_or_else(|| {
+        let names: Vec<&str> = IMPLEMENTS.iter().map(|row| row.name).collect();
         let nearest = closest(name, &names).map_or(String::new(), |near| format!("`{near}`, or another "));
         Refusal {
             parameter: "implement".to_owned(),
@@ -112,8 +113,8 @@ mod tests {
 
     #[test]
     fn every_row_has_its_own_name_a_source_and_a_draft() {
-        for (index, row) in TABLE.iter().enumerate() {
-            assert!(TABLE[..index].iter().all(|other| other.name != row.name), "{}", row.name);
+        for (index, row) in IMPLEMENTS.iter().enumerate() {
+            assert!(IMPLEMENTS[..index].iter().all(|other| other.name != row.name), "{}", row.name);
             assert!(row.source.contains("D497") && row.abc[0] > 0.0 && row.factors[0] == 1.0);
             assert!(row.factors.windows(2).all(|pair| pair[1] <= pair[0]), "{}", row.name);
             assert!((15.0..=50.0).contains(&row.spread_percent));

@@ -12,7 +12,7 @@
 
 use crate::carriage::{self, Carriage};
 use crate::payload;
-use crate::power_table::{Row, choose};
+use crate::power_table::{RotaryPower, choose};
 use headland_plugin::{
     Bound, Card, Implement, Load, Mode, Plugin, Refusal, Situation, State, Task, parameter,
 };
@@ -26,7 +26,7 @@ pub struct Harvester {
     #[serde(default)]
     machine: Option<String>,
     #[serde(default)]
-    power: Option<Row>,
+    power: Option<RotaryPower>,
     width_m: f64,
     crop_kg_per_m2: f64,
     kept_share: f64,
@@ -40,7 +40,7 @@ pub struct Harvester {
     #[serde(default)]
     carriage: Option<Carriage>,
     #[serde(skip)]
-    row: Row,
+    row: RotaryPower,
 }
 
 impl Plugin for Harvester {

@@ -18,12 +18,14 @@ mod spreader;
 mod tillage;
 mod trailer;
 
+pub use draft_table::{IMPLEMENTS, Implement, Per};
 pub use drawbar::Drawbar;
 pub use fluctuation::Fluctuation;
 pub use harvester::Harvester;
 pub use hydraulic::Hydraulic;
 pub use load_sensing::LoadSensing;
 pub use loader::Loader;
+pub use power_table::{MACHINES, MACHINES_SOURCE, RotaryPower};
 pub use pto_power::PtoPower;
 pub use rotary::Rotary;
 pub use shaft_brake::ShaftBrake;

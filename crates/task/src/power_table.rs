@@ -8,16 +8,19 @@
 use headland_plugin::{Refusal, closest};
 use serde::Deserialize;
 
-/// Power of one kind of machine: a [kW], b [kW/m], c [kW h/t].
+/// Power of one kind of machine.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Row {
+pub struct RotaryPower {
+    /// a [kW].
     pub a: f64,
+    /// b [kW/m].
     pub b: f64,
+    /// c [kW h/t].
     pub c: f64,
 }
 
-impl Row {
+impl RotaryPower {
     /// Power [W] at a width [m] and a flow [kg/s].
     pub fn power_w(&self, width_m: f64, flow_kg_s: f64) -> f64 {
         let tonnes_an_hour = flow_kg_s * KG_S_IN_T_H;
@@ -29,33 +32,36 @@ impl Row {
 const KG_S_IN_T_H: f64 = 3.6;
 const W_IN_KW: f64 = 1000.0;
 
+/// Where the rows come from.
+pub const MACHINES_SOURCE: &str = "ASABE D497, table 2, from memory";
+
 /// Every machine with a, b and c.
-pub(crate) const TABLE: [(&str, Row); 18] = [
-    ("baler, small rectangular", Row { a: 2.0, b: 0.0, c: 1.0 }),
-    ("baler, large rectangular", Row { a: 4.0, b: 0.0, c: 1.3 }),
-    ("baler, round, variable chamber", Row { a: 4.0, b: 0.0, c: 1.1 }),
-    ("baler, round, fixed chamber", Row { a: 2.5, b: 0.0, c: 1.8 }),
-    ("forage harvester, direct cut", Row { a: 6.0, b: 0.0, c: 5.7 }),
-    ("forage harvester, corn silage", Row { a: 6.0, b: 0.0, c: 3.3 }),
-    ("forage harvester, wilted grass", Row { a: 6.0, b: 0.0, c: 4.0 }),
-    ("combine, grain", Row { a: 20.0, b: 0.0, c: 3.6 }),
-    ("combine, corn", Row { a: 35.0, b: 0.0, c: 1.6 }),
-    ("mower, disk", Row { a: 0.0, b: 5.0, c: 0.0 }),
-    ("mower, flail", Row { a: 0.0, b: 10.0, c: 0.0 }),
-    ("mower-conditioner, disk", Row { a: 0.0, b: 8.0, c: 0.0 }),
-    ("mower-conditioner, cutterbar", Row { a: 0.0, b: 4.5, c: 0.0 }),
-    ("manure spreader", Row { a: 0.0, b: 0.0, c: 0.2 }),
-    ("rotary rake", Row { a: 0.0, b: 2.0, c: 0.0 }),
-    ("tedder", Row { a: 0.0, b: 1.5, c: 0.0 }),
-    ("tub grinder", Row { a: 5.0, b: 0.0, c: 8.4 }),
-    ("feed mixer", Row { a: 0.0, b: 0.0, c: 2.3 }),
+pub const MACHINES: [(&str, RotaryPower); 18] = [
+    ("baler, small rectangular", RotaryPower { a: 2.0, b: 0.0, c: 1.0 }),
+    ("baler, large rectangular", RotaryPower { a: 4.0, b: 0.0, c: 1.3 }),
+    ("baler, round, variable chamber", RotaryPower { a: 4.0, b: 0.0, c: 1.1 }),
+    ("baler, round, fixed chamber", RotaryPower { a: 2.5, b: 0.0, c: 1.8 }),
+    ("forage harvester, direct cut", RotaryPower { a: 6.0, b: 0.0, c: 5.7 }),
+    ("forage harvester, corn silage", RotaryPower { a: 6.0, b: 0.0, c: 3.3 }),
+    ("forage harvester, wilted grass", RotaryPower { a: 6.0, b: 0.0, c: 4.0 }),
+    ("combine, grain", RotaryPower { a: 20.0, b: 0.0, c: 3.6 }),
+    ("combine, corn", RotaryPower { a: 35.0, b: 0.0, c: 1.6 }),
+    ("mower, disk", RotaryPower { a: 0.0, b: 5.0, c: 0.0 }),
+    ("mower, flail", RotaryPower { a: 0.0, b: 10.0, c: 0.0 }),
+    ("mower-conditioner, disk", RotaryPower { a: 0.0, b: 8.0, c: 0.0 }),
+    ("mower-conditioner, cutterbar", RotaryPower { a: 0.0, b: 4.5, c: 0.0 }),
+    ("manure spreader", RotaryPower { a: 0.0, b: 0.0, c: 0.2 }),
+    ("rotary rake", RotaryPower { a: 0.0, b: 2.0, c: 0.0 }),
+    ("tedder", RotaryPower { a: 0.0, b: 1.5, c: 0.0 }),
+    ("tub grinder", RotaryPower { a: 5.0, b: 0.0, c: 8.4 }),
+    ("feed mixer", RotaryPower { a: 0.0, b: 0.0, c: 2.3 }),
 ];
 
 /// The row that `machine` names, or the own one.
 ///
 /// # Errors
 /// [`Refusal`] of both, of neither, and of a name that is not known.
-pub(crate) fn choose(machine: Option<&str>, own: Option<Row>) -> Result<Row, Refusal> {
+pub(crate) fn choose(machine: Option<&str>, own: Option<RotaryPower>) -> Result<RotaryPower, Refusal> {
     let refuse =
         |found: String, expected: String| Refusal { parameter: "machine".to_owned(), found, expected };
     let Some(name) = machine else {
@@ -74,8 +80,8 @@ pub(crate) fn choose(machine: Option<&str>, own: Option<Row>) -> Result<Row, Ref
     if own.is_some() {
         return Err(refuse(format!("`{name}` beside `power`"), "one of the two".to_owned()));
     }
-    TABLE.iter().find(|(known, _)| *known == name).map(|(_, row)| *row).ok_or_else(|| {
-        let names: Vec<&str> = TABLE.iter().map(|(known, _)| *known).collect();
+    MACHINES.iter().find(|(known, _)| *known == name).map(|(_, row)| *row).ok_or_else(|| {
+        let names: Vec<&str> = MACHINES.iter().map(|(known, _)| *known).collect();
         let nearest = closest(name, &names).map_or(String::new(), |near| format!("`{near}`, or another "));
         refuse(format!("`{name}`"), format!("{nearest}of: {}", names.join("; ")))
     })
@@ -96,11 +102,11 @@ mod tests {
 
     #[test]
     fn a_machine_is_named_or_described_and_not_both() {
-        let own = Row { a: 1.0, b: 2.0, c: 3.0 };
+        let own = RotaryPower { a: 1.0, b: 2.0, c: 3.0 };
         assert_eq!(choose(None, Some(own)), Ok(own));
         assert!(choose(Some("tedder"), Some(own)).is_err() && choose(None, None).is_err());
         let refusal = choose(Some("mower disk"), None).unwrap_err();
         assert!(refusal.expected.starts_with("`mower, disk`"), "{refusal}");
-        assert_eq!(choose(None, Some(Row { c: -1.0, ..own })).unwrap_err().parameter, "power.c");
+        assert_eq!(choose(None, Some(RotaryPower { c: -1.0, ..own })).unwrap_err().parameter, "power.c");
     }
 }

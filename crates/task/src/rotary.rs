@@ -7,7 +7,7 @@
 //! The standard's own spread is ±25 to ±50 %. A machine that idles takes a + b W. Leaves out starting and what blocks.
 
 use crate::carriage::{self, Carriage};
-use crate::power_table::{Row, choose};
+use crate::power_table::{RotaryPower, choose};
 use headland_plugin::{
     Bound, Card, Implement, Load, Mode, Plugin, Refusal, Situation, State, Task, parameter,
 };
@@ -21,17 +21,17 @@ pub struct Rotary {
     #[serde(default)]
     machine: Option<String>,
     #[serde(default)]
-    power: Option<Row>,
+    power: Option<RotaryPower>,
     width_m: f64,
     #[serde(default)]
     crop_kg_per_m2: f64,
     #[serde(default)]
     carriage: Option<Carriage>,
     #[serde(skip)]
-    row: Row,
+    row: RotaryPower,
 }
 
-impl Default for Row {
+impl Default for RotaryPower {
     fn default() -> Self {
         Self { a: 0.0, b: 0.0, c: 0.0 }
     }

@@ -9,7 +9,7 @@
 
 use crate::carriage::{self, Carriage};
 use crate::payload;
-use crate::power_table::{Row, choose};
+use crate::power_table::{RotaryPower, choose};
 use headland_plugin::{Bound, Card, Load, Mode, Plugin, Refusal, Situation, State, Task, parameter};
 use serde::Deserialize;
 use std::path::Path;
@@ -21,7 +21,7 @@ pub struct Spreader {
     #[serde(default)]
     machine: Option<String>,
     #[serde(default)]
-    power: Option<Row>,
+    power: Option<RotaryPower>,
     width_m: f64,
     dose_kg_per_m2: f64,
     capacity_kg: f64,
@@ -30,7 +30,7 @@ pub struct Spreader {
     #[serde(default)]
     carriage: Option<Carriage>,
     #[serde(skip)]
-    row: Row,
+    row: RotaryPower,
 }
 
 impl Plugin for Spreader {

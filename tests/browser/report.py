@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Opens a report in headless Chromium and checks that every plot is drawn and that nothing went wrong.
 
-usage: report.py REPORT.html [--shots FOLDER]
+usage: report.py REPORT.html [--shots FOLDER] [--part TITLE FILE.png]
+
+--shots takes pictures of the whole page; --part takes one of the plot of this title.
 
 Needs python 3 and a Chromium, nothing else: the browser is spoken to over its DevTools pipe. The browser is the one of
 HEADLAND_CHROMIUM, else the first of chromium, chromium-browser, google-chrome, chrome on the PATH. Without a browser the
@@ -37,6 +39,15 @@ LOOK = """
 """
 # What the page is wider than its window, in pixels.
 OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+# Where the plot of a title stands on the page; null where there is none.
+PART = """
+((title) => {
+  const head = [...document.querySelectorAll('figure h3')].find((one) => one.textContent === title)?.closest('figure');
+  if (!head) return null;
+  const {x, y, width, height} = head.getBoundingClientRect();
+  return {x: x + window.scrollX - 8, y: y + window.scrollY - 8, width: width + 16, height: height + 16, scale: 1};
+})
+"""
 # A drag over the middle of the first plot over time has to zoom all plots of its section, and a double click to undo it.
 ZOOM = """
 (() => {
@@ -148,6 +159,13 @@ class Browser:
         shot = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=True)
         path.write_bytes(base64.b64decode(shot["data"]))
 
+    def shoot_part(self, title, path):
+        clip = self.value_of(f"{PART}({json.dumps(title)})")
+        if clip is None:
+            raise RuntimeError(f"no plot is called `{title}`")
+        shot = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=True, clip=clip)
+        path.write_bytes(base64.b64decode(shot["data"]))
+
     def complaints(self):
         found = []
         for event in self.events:
@@ -173,7 +191,7 @@ class Browser:
             self.process.wait()
 
 
-def check(browser, page, shots):
+def check(browser, page, shots, part):
     """Looks at the page at two widths in light and dark; a list of what is wrong."""
     wrong = []
     browser.open(page)
@@ -195,6 +213,10 @@ def check(browser, page, shots):
             wrong.append(f"{where}: the page is {overflow} px wider than its window")
         if shots:
             browser.shoot(shots / f"{width}_{'dark' if dark else 'light'}.png")
+    if part:
+        browser.show(1280, False)
+        browser.settle()
+        browser.shoot_part(*part)
     expected = browser.value_of("JSON.parse(document.getElementById('plots').textContent).length")
     if len(plots) != expected:
         wrong.append(f"{expected} plots have data and {len(plots)} a place")
@@ -214,6 +236,11 @@ def main():
         shots = pathlib.Path(arguments[at + 1])
         shots.mkdir(parents=True, exist_ok=True)
         del arguments[at:at + 2]
+    part = None
+    if "--part" in arguments[:-2]:
+        at = arguments.index("--part")
+        part = (arguments[at + 1], pathlib.Path(arguments[at + 2]))
+        del arguments[at:at + 3]
     if len(arguments) != 1 or not pathlib.Path(arguments[0]).is_file():
         print(__doc__, file=sys.stderr)
         return 2
@@ -225,7 +252,7 @@ def main():
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         browser = Browser(program, folder)
         try:
-            plots, wrong = check(browser, pathlib.Path(arguments[0]), shots)
+            plots, wrong = check(browser, pathlib.Path(arguments[0]), shots, part)
         except (OSError, RuntimeError, TimeoutError) as error:
             plots, wrong = 0, [str(error), *browser.complaints()]
         finally:

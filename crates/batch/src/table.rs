@@ -63,17 +63,33 @@ fn numeric(values: &[String]) -> bool {
 /// # Errors
 /// [`BatchError::File`], [`BatchError::Table`].
 pub fn write(plan: &Plan, journal: &mut Journal, path: &Path) -> Result<(), BatchError> {
-    let failed = |reason: String| BatchError::Table { path: path.to_owned(), reason };
     let file_error = |source| BatchError::File { path: path.to_owned(), source };
     let values = value_columns(plan, journal)?;
     let parameters = parameter_columns(plan);
     let schema = Arc::new(schema(&parameters, &values));
     let part = path.with_extension("parquet.part");
-    let file = File::create(&part).map_err(file_error)?;
+    let written = write_rows(plan, journal, (path, &part), (&parameters, &values), &schema)
+        .and_then(|()| std::fs::rename(&part, path).map_err(file_error));
+    if written.is_err() {
+        // The journal has everything that the half of a table has.
+        let _ = std::fs::remove_file(&part);
+    }
+    written
+}
+
+fn write_rows(
+    plan: &Plan,
+    journal: &mut Journal,
+    (path, part): (&Path, &Path),
+    (parameters, values): (&[(String, bool)], &[String]),
+    schema: &Arc<Schema>,
+) -> Result<(), BatchError> {
+    let file_error = |source| BatchError::File { path: path.to_owned(), source };
+    let file = File::create(part).map_err(file_error)?;
     let whole = file.try_clone().map_err(file_error)?;
     let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();
-    let mut writer = ArrowWriter::try_new(file, Arc::clone(&schema), Some(properties))
-        .map_err(|error| failed(error.to_string()))?;
+    let mut writer = ArrowWriter::try_new(file, Arc::clone(schema), Some(properties))
+        .map_err(|error| told(path, error))?;
     let mut first = 0;
     while first < plan.total() {
         let last = (first + ROWS).min(plan.total());
@@ -83,15 +99,14 @@ pub fn write(plan: &Plan, journal: &mut Journal, path: &Path) -> Result<(), Batc
                 rows.push(row);
             }
         }
-        let columns = columns(plan, &parameters, &values, &rows);
-        let batch =
-            RecordBatch::try_new(Arc::clone(&schema), columns).map_err(|error| failed(error.to_string()))?;
+        let columns = columns(plan, parameters, values, &rows);
+        let batch = RecordBatch::try_new(Arc::clone(schema), columns)
+            .map_err(|error| BatchError::Table { path: path.to_owned(), reason: error.to_string() })?;
         writer.write(&batch).and_then(|()| writer.flush()).map_err(|error| told(path, error))?;
         first = last;
     }
     writer.close().map_err(|error| told(path, error))?;
-    whole.sync_all().map_err(file_error)?;
-    std::fs::rename(&part, path).map_err(file_error)
+    whole.sync_all().map_err(file_error)
 }
 
 /// An error of the Parquet writer; where the file system refused, it is told as that.

@@ -49,10 +49,10 @@ impl Failure {
 
     /// A file that cannot be written: the user's folder, or the machine's disk.
     pub fn unwritable(path: &std::path::Path, error: &std::io::Error) -> Self {
-        use std::io::ErrorKind::{QuotaExceeded, StorageFull};
+        use std::io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
         let text = format!("cannot write {}: {error}", path.display());
         match error.kind() {
-            StorageFull | QuotaExceeded => Self::Machine(text),
+            StorageFull | QuotaExceeded | FileTooLarge => Self::Machine(text),
             _ => Self::Input(text),
         }
     }

@@ -15,7 +15,12 @@ pub fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
     }
     let mut draft = path.to_owned().into_os_string();
     draft.push(".part");
-    std::fs::write(&draft, text).and_then(|()| std::fs::rename(&draft, path)).map_err(failed)
+    let written = std::fs::write(&draft, text).and_then(|()| std::fs::rename(&draft, path));
+    if written.is_err() {
+        // Half a file helps nobody; that it may stay behind must not hide why it is half.
+        let _ = std::fs::remove_file(&draft);
+    }
+    written.map_err(failed)
 }
 
 /// Refuses a file that cannot be written, before what takes long is begun; what stands there stays as it is.

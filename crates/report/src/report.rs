@@ -126,8 +126,7 @@ impl Report {
         let html = self.to_html()?;
         let refused = |source| ReportError::File { path: path.to_owned(), source };
         let part = path.with_extension("html.part");
-        fs::write(&part, html).map_err(refused)?;
-        fs::rename(&part, path).map_err(|source| {
+        fs::write(&part, html).and_then(|()| fs::rename(&part, path)).map_err(|source| {
             // The page is not wanted half; that it may stay behind must not hide why it was refused.
             let _ = fs::remove_file(&part);
             refused(source)

@@ -7,6 +7,7 @@ use arrow_array::{
 use arrow_schema::{DataType, Field, Schema};
 use parquet::arrow::{ArrowWriter, arrow_reader::ParquetRecordBatchReaderBuilder};
 use parquet::basic::Compression;
+use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
 use std::collections::HashMap;
 use std::fs::{self, File};
@@ -21,7 +22,6 @@ const ORIGIN: &str = "origin";
 /// # Errors
 /// [`TraceError::File`] where the file system refuses, [`TraceError::Format`] where the channels cannot be stored.
 pub fn write_parquet(path: &Path, runs: &[Run]) -> Result<(), TraceError> {
-    let format = |reason: String| TraceError::Format { path: path.to_owned(), reason };
     let file_error = |source| TraceError::File { path: path.to_owned(), source };
     let mut names: Vec<(&str, Origin)> = Vec::new();
     for channel in runs.iter().flat_map(|run| run.trace.channels()) {
@@ -43,9 +43,24 @@ pub fn write_parquet(path: &Path, runs: &[Run]) -> Result<(), TraceError> {
     let schema = Arc::new(Schema::new(fields));
     let part = path.with_extension("parquet.part");
     let file = File::create(&part).map_err(file_error)?;
+    let written = write_runs(file, &schema, &names, runs).map_err(|error| told(path, error));
+    let written = written.and_then(|()| fs::rename(&part, path).map_err(file_error));
+    if written.is_err() {
+        // Half a file helps nobody; that it may stay behind must not hide why it is half.
+        let _ = fs::remove_file(&part);
+    }
+    written
+}
+
+/// The runs one after the other, each a batch of rows.
+fn write_runs(
+    file: File,
+    schema: &Arc<Schema>,
+    names: &[(&str, Origin)],
+    runs: &[Run],
+) -> Result<(), ParquetError> {
     let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();
-    let mut writer = ArrowWriter::try_new(file, Arc::clone(&schema), Some(properties))
-        .map_err(|error| format(error.to_string()))?;
+    let mut writer = ArrowWriter::try_new(file, Arc::clone(schema), Some(properties))?;
     for Run { id, trace } in runs {
         let samples = trace.len();
         let mut columns: Vec<ArrayRef> = vec![
@@ -60,12 +75,19 @@ pub fn write_parquet(path: &Path, runs: &[Run]) -> Result<(), TraceError> {
                 None => Arc::new(Float64Array::new_null(samples)),
             }
         }));
-        let batch =
-            RecordBatch::try_new(Arc::clone(&schema), columns).map_err(|error| format(error.to_string()))?;
-        writer.write(&batch).map_err(|error| format(error.to_string()))?;
+        writer.write(&RecordBatch::try_new(Arc::clone(schema), columns)?)?;
     }
-    writer.close().map_err(|error| format(error.to_string()))?;
-    fs::rename(&part, path).map_err(file_error)
+    writer.close().map(drop)
+}
+
+/// An error of the Parquet writer; where the file system refused, it is told as that.
+fn told(path: &Path, error: ParquetError) -> TraceError {
+    let format = |reason: String| TraceError::Format { path: path.to_owned(), reason };
+    let ParquetError::External(inner) = error else { return format(error.to_string()) };
+    match inner.downcast::<std::io::Error>() {
+        Ok(source) => TraceError::File { path: path.to_owned(), source: *source },
+        Err(other) => format(other.to_string()),
+    }
 }
 
 /// Reads the runs of a file. A file without a `run` column holds one run, named after the file.

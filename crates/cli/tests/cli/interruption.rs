@@ -91,3 +91,27 @@ fn an_interruption_keeps_what_is_finished_and_ends_with_130() {
     }
     panic!("nothing is ever finished");
 }
+
+/// A file that may not grow stands for a full disk. What was whole before it filled stays, and nothing is left half.
+#[test]
+fn a_full_disk_is_3_and_leaves_no_half_file() {
+    for (blocks, kept) in [(1, None), (64, Some("trace.parquet"))] {
+        let place = Place::new();
+        let script = format!(
+            "trap '' XFSZ; ulimit -f {blocks}; exec {} run {} --out {}",
+            env!("CARGO_BIN_EXE_headland"),
+            place.path("scenario.ron"),
+            place.path("out")
+        );
+        let output = Command::new("bash").args(["-c", &script]).output().unwrap();
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{told}");
+        assert!(told.contains("cannot write") && told.contains("out/"), "{told}");
+        let left: Vec<String> = std::fs::read_dir(place.path("out"))
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+            .collect();
+        assert!(left.iter().all(|name| !name.ends_with(".part")), "{left:?}");
+        assert!(kept.is_none_or(|kept| left.iter().any(|name| name == kept)), "{left:?}");
+    }
+}

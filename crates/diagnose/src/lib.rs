@@ -109,10 +109,20 @@ pub fn diagnose(
     if !against.is_empty() {
         return report::inconclusive(&case, &sound, &against);
     }
-    let braked = if case.wanted("braking") { brakes::brakes(&case, &sound) } else { Vec::new() };
-    let sound = spells::outside(&case, &sound, &braked);
+    let logged = sound;
+    let brakes =
+        |case: &Case| if case.wanted("braking") { brakes::brakes(case, &logged) } else { Vec::new() };
+    let mut braked = brakes(&case);
+    let mut sound = spells::outside(&case, &logged, &braked);
     let mut look = Look::at(&case, &sound)?;
     look.sensors_first(&mut case)?;
+    if !braked.is_empty() && case.corrections.iter().any(|one| ["latency", "clock_drift"].contains(&one.id)) {
+        // A force that comes late leaves what looks like brakes where it sets in.
+        braked = brakes(&case);
+        sound = spells::outside(&case, &logged, &braked);
+        look.again(&mut case, &sound)?;
+        look.sensors_first(&mut case)?;
+    }
     look.sharpen(&case)?;
     let events = spells::spells(&mut case, &mut look, &sound, &braked)?;
     let (system, mut pool, found) = look.closer(&mut case)?;

@@ -44,10 +44,11 @@ pub fn report(
         findings.extend(beside.faults.iter().map(|fault| faulty(fault, system)));
     }
     let fit = fit(case, system, Some(found), proof);
+    let strain = strain(case, refined);
     let verdict = if beside.withheld.is_some() {
         Verdict::CannotTell
     } else {
-        verdict(&findings, fit.lack_of_fit, timed(refined))
+        verdict(&findings, fit.lack_of_fit, timed(refined), strain.map_or(0.0, |(_, strain)| strain))
     };
     notes.extend(remarks(case, &found.unproven));
     let mut null_space = refined.null_space.clone();
@@ -76,6 +77,7 @@ pub fn report(
         fit: &fit,
         balances: &system.kinds,
         before: &before,
+        strain,
         withheld: beside.withheld.as_deref(),
         null_space: &refined.null_space,
         own_spells: beside.events.iter().any(|event| !case.fit[event.run]),
@@ -164,6 +166,15 @@ fn timed(refined: &Refined) -> bool {
             || cured.function().is_some() && cured.cause.form == Form::OverTime && !cured.cause.by_run
     };
     refined.causes.iter().any(own)
+}
+
+/// The free parameter that ends furthest from what was known of it, and by how many standard deviations.
+fn strain<'a>(case: &Case, refined: &'a Refined) -> Option<(&'a Free, f64)> {
+    let of = |free: &'a Free| {
+        let sd = case.study.parameters.iter().find(|one| one.name == free.name)?.sd?;
+        (sd > 0.0).then(|| (free, (free.value - free.prior).abs() / sd))
+    };
+    refined.free.iter().filter_map(of).max_by(|one, other| one.1.total_cmp(&other.1))
 }
 
 fn ids(case: &Case, wanted: bool) -> Vec<String> {

@@ -124,17 +124,23 @@ impl FindingReport {
 
 /// What a diagnosis says in a word. Beside what is certain, one cause in doubt leaves open what is missing; it takes nothing
 /// from a sensor's fault. Where far more than noise is left, something is missing all the same: no cause is claimed then, or
-/// what is claimed may stand in for it, unless it is `timed` and no run can show it of another.
-pub fn verdict(findings: &[FindingReport], lack_of_fit: f64, timed: bool) -> Verdict {
+/// what is claimed may stand in for it, unless it is `timed` and no run can show it of another. A free parameter that ends so
+/// many standard deviations (`strain`) from what was known of it stands in for something as well.
+pub fn verdict(findings: &[FindingReport], lack_of_fit: f64, timed: bool, strain: f64) -> Verdict {
     /// An error of so many times the noise is no matter of how well the noise is known.
     const FAR: f64 = 10.0;
+    /// A parameter that is so far from its prior is not a little wrong: one in a thousand is.
+    const STRAINED: f64 = 3.3;
+    /// Beside what was found, which may be mistaken by as much as its own error allows, it has to be further.
+    const STRAINED_BESIDE: f64 = 4.0;
     let far = lack_of_fit > FAR;
     let any = |kind: FindingKind| findings.iter().any(|finding| finding.kind == kind);
     let Some(first) = findings.first() else {
-        return if far { Verdict::CannotTell } else { Verdict::None };
+        return if far || strain > STRAINED { Verdict::CannotTell } else { Verdict::None };
     };
-    let doubtful = any(FindingKind::Physics) && far && !timed;
-    if first.kind == FindingKind::Unlisted && !first.is_doubtful() {
+    let strained = strain > STRAINED_BESIDE && !any(FindingKind::Artefact);
+    let doubtful = any(FindingKind::Physics) && far && !timed || strained;
+    if first.kind == FindingKind::Unlisted && !first.is_doubtful() && !strained {
         Verdict::Unlisted
     } else if first.is_doubtful()
         || doubtful
@@ -399,7 +405,7 @@ mod tests {
         let sure = || finding(Physics, "wind", None);
         let doubtful = || finding(Physics, "grade", Some("soft_ground"));
         let fault = || finding(Artefact, "accelerometer_bias", Some("accelerometer_tilt"));
-        let verdict = |findings: &[FindingReport]| super::verdict(findings, 3.0, false);
+        let verdict = |findings: &[FindingReport]| super::verdict(findings, 3.0, false, 1.0);
         assert_eq!(verdict(&[]), Verdict::None);
         assert_eq!(verdict(&[sure()]), Verdict::MissingPhysics);
         assert_eq!(verdict(&[sure(), doubtful()]), Verdict::CannotTell);
@@ -418,10 +424,22 @@ mod tests {
         use FindingKind::{Artefact, Physics};
         let sure = [finding(Physics, "wind", None)];
         let fault = [finding(Artefact, "latency", None)];
-        assert_eq!(verdict(&[], 40.0, false), Verdict::CannotTell);
-        assert_eq!(verdict(&[], f64::NAN, false), Verdict::None);
-        assert_eq!(verdict(&sure, 40.0, false), Verdict::CannotTell);
-        assert_eq!(verdict(&sure, 40.0, true), Verdict::MissingPhysics);
-        assert_eq!(verdict(&fault, 40.0, false), Verdict::SensorArtefact);
+        assert_eq!(verdict(&[], 40.0, false, 0.0), Verdict::CannotTell);
+        assert_eq!(verdict(&[], f64::NAN, false, 0.0), Verdict::None);
+        assert_eq!(verdict(&sure, 40.0, false, 0.0), Verdict::CannotTell);
+        assert_eq!(verdict(&sure, 40.0, true, 0.0), Verdict::MissingPhysics);
+        assert_eq!(verdict(&fault, 40.0, false, 0.0), Verdict::SensorArtefact);
+    }
+
+    #[test]
+    fn a_parameter_far_from_what_was_known_of_it_stands_in_for_something() {
+        use FindingKind::{Artefact, Physics, Unlisted};
+        let verdict = |findings: &[FindingReport], strain: f64| super::verdict(findings, 1.0, false, strain);
+        assert_eq!(verdict(&[], 2.5), Verdict::None);
+        assert_eq!(verdict(&[], 3.5), Verdict::CannotTell);
+        assert_eq!(verdict(&[finding(Physics, "wind", None)], 3.5), Verdict::MissingPhysics);
+        assert_eq!(verdict(&[finding(Physics, "wind", None)], 4.5), Verdict::CannotTell);
+        assert_eq!(verdict(&[finding(Unlisted, "unlisted", None)], 4.5), Verdict::CannotTell);
+        assert_eq!(verdict(&[finding(Artefact, "latency", None)], 4.5), Verdict::SensorArtefact);
     }
 }

@@ -4,6 +4,7 @@ use super::number::{plain, quantity};
 use super::{capital, listed, place};
 use crate::balance::Kind;
 use crate::map::Map;
+use crate::refine::Free;
 use crate::report::{FindingReport, Fit, FitRuns, Verdict};
 use headland_units::{stem, unit_of_name};
 
@@ -19,6 +20,8 @@ pub struct Told<'a> {
     pub balances: &'a [Kind],
     /// Where they do not close with the free parameters alone.
     pub before: &'a Map,
+    /// The free parameter that ends furthest from what was known of it, and by how many standard deviations.
+    pub strain: Option<(&'a Free, f64)>,
     /// Why nothing is claimed, where it is not.
     pub withheld: Option<&'a str>,
     /// What the data cannot separate.
@@ -60,6 +63,7 @@ pub fn answer(told: &Told) -> String {
     sentences.extend(told.withheld.map(str::to_owned));
     sentences.extend(told.findings.iter().map(|finding| finding.sentence.clone()));
     sentences.extend(calibrated(told));
+    sentences.extend(strained(told));
     sentences.push(proof(told));
     sentences.extend(left_over(told));
     if told.verdict == Verdict::CannotTell
@@ -118,6 +122,20 @@ fn calibrated(told: &Told) -> Option<String> {
     let any = told.findings.iter().any(|finding| finding.share_of_mismatch > 0.0);
     (any && shares < GREATER && explained)
         .then(|| "The greater part is what the free parameters take within their priors.".to_owned())
+}
+
+/// That a free parameter had to go further than a little, where it had.
+fn strained(told: &Told) -> Option<String> {
+    /// Of parameters that are a little wrong one in three hundred is further [standard deviations].
+    const FAR: f64 = 3.0;
+    let (free, strain) = told.strain.filter(|(_, strain)| *strain > FAR)?;
+    let unit = unit_of_name(&free.name).map_or_else(String::new, |unit| unit.symbol);
+    Some(format!(
+        "The {} ends at {}, {strain:.1} standard deviations from what was known of it: it may stand in for something that is \
+         missing.",
+        plain(stem(&free.name)),
+        quantity(free.value, &unit)
+    ))
 }
 
 fn proof(told: &Told) -> String {

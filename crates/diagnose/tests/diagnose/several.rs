@@ -172,3 +172,27 @@ fn a_late_speed_is_told_beside_a_drag() {
     let found = found(&late, &Options::default()).unwrap();
     assert!(named(&found, "latency") && named(&found, "neutral_drag"), "{}", found.diagnosis.answer);
 }
+
+/// The clock of a force falls behind by up to half a second: where the force of braking sets in late, nobody braked.
+#[test]
+fn a_force_whose_clock_runs_slow_is_no_brake() {
+    const RATE: f64 = 0.012;
+    let text = scenario(0.012, "", "")
+        .replace("Reach(speed_m_s: 3, acceleration_m_s2: 0.4)", "Reach(speed_m_s: 3, acceleration_m_s2: 1.5)")
+        .replace("Hold(for_s: 6)", "Hold(for_s: 25)");
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "tractive_force_n" => value + 60.0 * draws.normal(),
+        _ => value,
+    };
+    let registry = headland_stock::registry();
+    let channels = ["speed_m_s", "position_m", "heading_rad", "tractive_force_n"];
+    let sound = recording_of_scenario(&text, &registry, &channels, (23, &noisy));
+    let slow = changed(&sound, "tractive_force_n", |_, trace, index| {
+        let (time_s, force) = (trace.time_s(), trace.get("tractive_force_n").unwrap());
+        let at = time_s[index] / (1.0 + RATE);
+        force[time_s.partition_point(|time| *time < at).min(time_s.len() - 1)]
+    });
+    let found = found_of_scenario(&text, &slow, &Options::default(), &registry).unwrap();
+    assert_eq!(ids(&found), ["clock_drift"], "{}", found.diagnosis.answer);
+}

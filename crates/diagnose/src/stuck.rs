@@ -96,6 +96,21 @@ pub fn usual_step(values: &[f64]) -> f64 {
     if steps.is_empty() { f64::INFINITY } else { quantile_of_sorted(&steps, 1.0 - UNUSUAL) }
 }
 
+/// Whether a channel leaps behind a stretch of equal values, first and last: further than it ever does but there, or about as
+/// far as it would have come meanwhile at its usual pace.
+fn leaping(values: &[f64]) -> impl Fn(usize, usize) -> bool {
+    /// What is caught up is this share of the usual way at least,
+    const CAUGHT_UP: f64 = 0.5;
+    /// and stands out from the steps of the channel.
+    const STANDS_OUT: f64 = 2.0;
+    let (usual, steps) = (usual_step(values), changes(values));
+    let pace = if steps.is_empty() { f64::INFINITY } else { quantile_of_sorted(&steps, 0.5) };
+    move |from, to| {
+        let Some(leap) = values.get(to + 1).map(|next| (next - values[to]).abs()) else { return false };
+        leap > LEAP * usual || leap > STANDS_OUT * usual && leap > CAUGHT_UP * pace * (to + 1 - from) as f64
+    }
+}
+
 /// By how much a channel changes where it does, the least first.
 fn changes(values: &[f64]) -> Vec<f64> {
     let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
@@ -140,14 +155,13 @@ pub fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Optio
         let own_noise = noisy(values, &equal);
         noisy_everywhere &= own_noise || renews(values);
         let enough = if own_noise { 0.0 } else { HELD * usual_length(&equal, values.len()) };
-        let leap = LEAP * usual_step(values);
-        let leaps = |to: usize| values.get(to + 1).is_some_and(|next| (next - values[to]).abs() > leap);
+        let leaps = leaping(values);
         let long: Vec<(usize, usize)> = equal
             .iter()
             .copied()
             .filter(|(from, to)| {
                 let moving = (*from..=*to).all(|index| drive.motion.value[index] > SLOWEST_M_S);
-                let (samples, long_s) = if leaps(*to) {
+                let (samples, long_s) = if leaps(*from, *to) {
                     (STUCK_SAMPLES_BEFORE_A_LEAP, STUCK_BEFORE_A_LEAP_S)
                 } else {
                     (STUCK_SAMPLES, STUCK_S)
@@ -163,7 +177,7 @@ pub fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Optio
             continue;
         }
         runs += 1;
-        leaps_everywhere &= long.iter().all(|(_, to)| leaps(*to));
+        leaps_everywhere &= long.iter().all(|(from, to)| leaps(*from, *to));
         // The motion is smoothed over samples before and after, and what is stuck spoils it there as well.
         let beside_s = if name.contains("speed") { drive.measured.how.smoothing_s } else { 0.0 };
         for (from, to) in long {
@@ -203,6 +217,21 @@ mod tests {
         assert!(!told(&stuck_at(100, 0.0)), "a smooth channel may stay where it is");
         let held: Vec<f64> = stuck_at(500, 0.01).iter().flat_map(|value| [*value; 20]).collect();
         assert!(!told(&held), "a channel that is renewed slowly is not stuck");
+    }
+
+    /// On its way down by 0.08 a sample, held for ten samples: it catches up with what it would have come meanwhile.
+    #[test]
+    fn a_channel_that_catches_up_was_stuck() {
+        let held = |at: usize| if (14..24).contains(&at) { 14 } else { at };
+        let wavy = |at: usize| 0.06 * ((at * 7919 % 101) as f64 / 50.0 - 1.0);
+        let values: Vec<f64> = (0..60).map(|at| 4.4 - 0.06 * held(at) as f64 + wavy(held(at))).collect();
+        let leaps = leaping(&values);
+        assert!((values[24] - values[23]).abs() < LEAP * usual_step(&values), "the old rule would do");
+        assert!(leaps(14, 23));
+        let coarse: Vec<f64> = (0..60).map(|at| 0.5 * (0.16 * f64::from(at)).round()).collect();
+        let leaps = leaping(&coarse);
+        let equal = still(&coarse);
+        assert!(equal.len() > 5 && equal.iter().all(|(from, to)| !leaps(*from, *to)), "steps of resolution");
     }
 
     #[test]

@@ -18,6 +18,8 @@ use crate::{Case, DiagnoseError, System};
 const RISES: f64 = 0.02;
 /// What leaves less than this share of the error that there is without it is not idle, however good the nominal scenario is.
 const HELPS: f64 = 0.6;
+/// What is hardly beyond chance has to take this share of the error of runs held out.
+const BORNE_OUT: f64 = 0.1;
 
 /// What was found, with values and the proof of it.
 pub struct Proven {
@@ -112,8 +114,9 @@ pub fn proven(
     }
     for place in (0..best.found.stand.parts.len()).rev() {
         if let Some(lesser) = without_idle(case, system, pool, &best, (events, by), place)? {
+            // What was hardly there to begin with leaves nothing missing.
+            withdrawn |= !is_faint(&best, place);
             best = lesser;
-            withdrawn = true;
         }
     }
     if let Some(lesser) = without_nothing(case, system, pool, &best, (events, by))? {
@@ -140,9 +143,10 @@ pub fn proven(
     Ok(best)
 }
 
-/// What was found without one law that nobody listed, or without one map of a path, where runs held out are no better with
-/// it than without it or than with the nominal scenario, in the balance that it belongs to: formulas and maps are free to
-/// follow the runs that they were made of.
+/// What was found without one law that nobody listed, without one map of a path, or without one listed cause that is hardly
+/// beyond chance, where runs held out are no better with it than without it or than with the nominal scenario, in the balance
+/// that it belongs to: formulas and maps are free to follow the runs that they were made of, and of many causes one fits the
+/// last bends of a model a little.
 fn without_idle(
     case: &Case,
     system: &System,
@@ -157,6 +161,7 @@ fn without_idle(
     let needed = match (&cause.law, cause.form) {
         (Some(_), _) => RISES,
         (None, Form::OverPosition) => 0.0,
+        (None, _) if is_faint(best, place) => BORNE_OUT,
         (None, _) => return Ok(None),
     };
     // What takes power at a shaft takes fuel for it: where it shows most is where it is told.
@@ -169,13 +174,33 @@ fn without_idle(
     let lesser = Proven::of(case, system, pool, found, events, by)?;
     let held_out = |one: &Proven| prove(case, system, &one.refined, Some(kind)).map(|proof| proof.held_out);
     let (with, without) = (held_out(best)?, held_out(&lesser)?);
-    let idle = with.zip(without).is_some_and(|(with, without)| {
-        // A nominal scenario may foresee runs that show nothing of it better than what others taught.
-        let helps = with.after < HELPS * without.after;
-        let least = if helps { without.after } else { without.after.min(with.before) };
-        with.after > (1.0 - needed) * least
-    });
+    let faint = is_faint(best, place);
+    let idle = with.zip(without).is_some_and(|(with, without)| is_idle(&with, &without, (needed, faint)));
     Ok(idle.then_some(lesser))
+}
+
+/// Whether errors of runs held out fall by less than the share that is needed, against those without a cause, and against those
+/// of the nominal scenario.
+fn is_idle(with: &Errors, without: &Errors, (needed, faint): (f64, bool)) -> bool {
+    // A nominal scenario may foresee runs that show nothing of it better than what others taught.
+    let helps = with.after < HELPS * without.after;
+    let least = if helps { without.after } else { without.after.min(with.before) };
+    // Where the nominal scenario is further off, it is calibration that stands against a faint cause, and not nothing.
+    let near = !faint || with.after > (1.0 - BORNE_OUT) * with.before;
+    with.after > (1.0 - needed) * least && near
+}
+
+/// Whether a listed cause of the world has hardly more evidence than the best of many has by chance.
+fn is_faint(best: &Proven, place: usize) -> bool {
+    /// So many times the growth of ln p that is needed.
+    const HARDLY: f64 = 2.0;
+    let columns = &best.found.stand.parts[place].trial.columns;
+    let own = best.refined.causes.iter().find(|cured| cured.accepted.trial.columns == *columns);
+    own.is_some_and(|cured| {
+        cured.cause.class == Class::Physics
+            && cured.cause.form == Form::Parameters
+            && cured.accepted.gain < HARDLY * cured.accepted.by_chance
+    })
 }
 
 /// What was found without the causes that may as well be none by what the runs say of them together, where nothing that was
@@ -295,4 +320,28 @@ fn lesser_set(state: &State, found: &Found, place: usize, unproven: Vec<usize>) 
         return None;
     }
     Some(state.found(stand, found.first.clone(), (found.tried.clone(), unproven), found.needed))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn idle(before: f64, after: f64, without: f64, needed: f64, faint: bool) -> bool {
+        is_idle(&Errors { before, after }, &Errors { before, after: without }, (needed, faint))
+    }
+
+    #[test]
+    fn what_does_not_help_runs_held_out_is_idle() {
+        assert!(idle(1.0, 0.99, 1.0, RISES, false), "a formula that brings a hundredth");
+        assert!(!idle(1.0, 0.5, 1.0, RISES, false));
+        assert!(idle(0.4, 0.5, 0.7, RISES, false), "the nominal scenario is better");
+        assert!(!idle(0.4, 0.5, 1.0, RISES, false), "without it what was calibrated is far worse");
+    }
+
+    #[test]
+    fn a_faint_cause_is_borne_out_by_a_tenth_unless_calibration_is_what_helps() {
+        assert!(idle(1.0, 0.95, 0.97, BORNE_OUT, true));
+        assert!(!idle(1.0, 0.8, 0.97, BORNE_OUT, true));
+        assert!(!idle(5.0, 0.95, 0.97, BORNE_OUT, true), "the nominal scenario is far off");
+    }
 }

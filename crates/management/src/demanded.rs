@@ -3,7 +3,7 @@
 //! Each demand holds for one step. What a driveline remembers beside its charge, such as the range of a transmission, is in
 //! both what its management left it in; a turbocharger does not lag. So the two differ by the sharing of power alone.
 
-use crate::optimum::{Course, Grid, Optimum, Unreachable, optimum};
+use crate::optimum::{Course, Grid, Sharing, Unreachable, optimum};
 use headland_plugin::{Consequence, Demand, Driveline, Share};
 
 /// How finely the least is looked for.
@@ -13,19 +13,6 @@ pub struct Fineness {
     pub charges: usize,
     /// Powers of the engine beside 0.
     pub levels: usize,
-}
-
-/// How a course was driven by a management.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Managed {
-    /// Energy of the fuel [J].
-    pub fuel_j: f64,
-    /// Energy that the wheels got less than was asked [J].
-    pub short_j: f64,
-    /// Share in every step.
-    pub shares: Vec<Share>,
-    /// Charge before every step, and at the end.
-    pub charges: Vec<f64>,
 }
 
 /// A driveline whose sharing nobody can ask about.
@@ -56,7 +43,7 @@ pub struct Demanded<'a> {
     /// Energy of a charge of 1 [J].
     full_charge_j: f64,
     /// What came of its own management.
-    pub managed: Managed,
+    pub managed: Sharing,
 }
 
 /// Charge on either side of what the management used that the least may use as well; the store keeps its own window.
@@ -76,7 +63,7 @@ impl<'a> Demanded<'a> {
             (index("state_of_charge")?, index("engine_runs")?, index("engine_set_power_w")?);
         let boost = index("boost").ok();
         let mut memory: Vec<f64> = named.iter().map(|state| state.initial).collect();
-        let mut managed = Managed {
+        let mut managed = Sharing {
             fuel_j: 0.0,
             short_j: 0.0,
             shares: Vec::with_capacity(demands.len()),
@@ -154,7 +141,7 @@ impl<'a> Demanded<'a> {
     ///
     /// # Errors
     /// [`Unreachable`] where the grid has fewer than two points.
-    pub fn least(&self, fineness: Fineness) -> Result<Optimum, Unreachable> {
+    pub fn least(&self, fineness: Fineness) -> Result<Sharing, Unreachable> {
         let charges = &self.managed.charges;
         let (start, end) = (charges[0], charges[charges.len() - 1]);
         // As far to one side of the end as to the other, so that the step of the cost there is met by a point.

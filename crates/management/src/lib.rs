@@ -11,10 +11,10 @@ mod plant;
 mod thresholds;
 
 pub use adaptive_ecms::AdaptiveEcms;
-pub use demanded::{Demanded, Fineness, Managed, NotShared};
+pub use demanded::{Demanded, Fineness, NotShared};
 pub use ecms::Ecms;
 pub use load_levelling::LoadLevelling;
-pub use optimum::{Course, Grid, Optimum, Unreachable, optimum};
+pub use optimum::{Course, Grid, Sharing, Unreachable, optimum};
 pub use thresholds::Thresholds;
 
 use headland_plugin::Registry;

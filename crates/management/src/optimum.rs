@@ -43,9 +43,9 @@ pub struct Grid {
     pub full_charge_j: f64,
 }
 
-/// The best course.
+/// How power was shared over a course, and what that took.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Optimum {
+pub struct Sharing {
     /// Energy of the fuel [J].
     pub fuel_j: f64,
     /// Energy that the wheels got less than was asked [J].
@@ -80,7 +80,7 @@ const SHORT_WEIGHT: f64 = crate::least::SHORT_COST;
 ///
 /// # Errors
 /// [`Unreachable`].
-pub fn optimum(course: &dyn Course, start: f64, end: f64, grid: Grid) -> Result<Optimum, Unreachable> {
+pub fn optimum(course: &dyn Course, start: f64, end: f64, grid: Grid) -> Result<Sharing, Unreachable> {
     let (least, most) = grid.window;
     let within = |charge: f64| (least..=most).contains(&charge);
     if grid.charges < 2 || most <= least || !within(start) || !within(end) {
@@ -101,7 +101,7 @@ pub fn optimum(course: &dyn Course, start: f64, end: f64, grid: Grid) -> Result<
     }
     values.reverse();
 
-    let mut found = Optimum { fuel_j: 0.0, short_j: 0.0, shares: Vec::new(), charges: vec![start] };
+    let mut found = Sharing { fuel_j: 0.0, short_j: 0.0, shares: Vec::new(), charges: vec![start] };
     let mut charge = start;
     for step in 0..course.steps() {
         let (share, _) = best(course, step, charge, &grid, &values[step + 1]);

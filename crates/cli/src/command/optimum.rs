@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::output::Output;
 use crate::page;
 use crate::say::Say;
-use headland_management::{Demanded, Fineness, Optimum};
+use headland_management::{Demanded, Fineness, Sharing};
 use headland_plugin::{Registry, Share};
 use headland_scenario::{RunSpec, Scenario};
 use headland_sim::{End, Outcome, demands};
@@ -82,7 +82,7 @@ pub fn optimum(registry: &Registry, options: &OptimumOptions, say: Say) -> Resul
     let traces: Vec<Run> =
         all.iter().map(|one| Run { id: one.measured.id.clone(), trace: one.trace.clone() }).collect();
     output.traces("optimum.parquet", &traces)?;
-    output.page("report.html", &page::optimum::page(&scenario, &all, options.step)?)?;
+    output.page("report.html", &page::optimum::page(&scenario, &all, options.step))?;
     let summary = Summary {
         schema: "headland.optimum/1",
         about: scenario.about.clone(),
@@ -151,7 +151,7 @@ fn measured(
 }
 
 /// Both courses, a sample at the begin of every step.
-fn trace(demanded: &Demanded<'_>, least: &Optimum, step_s: f64) -> Result<Trace, Failure> {
+fn trace(demanded: &Demanded<'_>, least: &Sharing, step_s: f64) -> Result<Trace, Failure> {
     let managed = &demanded.managed;
     let steps = managed.shares.len();
     let power = |shares: &[Share]| -> Vec<f64> {

@@ -1,14 +1,14 @@
 //! The page of a management and the course of least fuel.
 
 use crate::command::optimum::Courses;
-use headland_report::{Axis, Cell, Lines, Plot, Report, ReportError, Section, Series, Table};
+use headland_report::{Axis, Cell, Lines, Plot, Report, Section, Series, Table};
 use headland_scenario::Scenario;
 
 /// Runs that get plots of their own; the table holds all.
 const IN_DETAIL: usize = 12;
 
 /// Makes the page.
-pub fn page(scenario: &Scenario, all: &[Courses], step_s: f64) -> Result<Report, ReportError> {
+pub fn page(scenario: &Scenario, all: &[Courses], step_s: f64) -> Report {
     let worst = all.iter().map(|one| one.measured.above_least).fold(f64::NEG_INFINITY, f64::max);
     let lede = format!(
         "The management takes {} {:.1} % more fuel than what knows the whole course and ends at the same charge.",
@@ -18,9 +18,9 @@ pub fn page(scenario: &Scenario, all: &[Courses], step_s: f64) -> Result<Report,
     .replace("  ", " ");
     let mut report = Report::new(scenario.about.clone(), lede).with(overview(all, step_s));
     for one in all.iter().take(IN_DETAIL) {
-        report = report.with(detail(one, all.len() == 1)?);
+        report = report.with(detail(one, all.len() == 1));
     }
-    Ok(report)
+    report
 }
 
 fn overview(all: &[Courses], step_s: f64) -> Section {
@@ -62,7 +62,7 @@ fn overview(all: &[Courses], step_s: f64) -> Section {
     Section::new("At a glance").words(words).with(table)
 }
 
-fn detail(one: &Courses, alone: bool) -> Result<Section, ReportError> {
+fn detail(one: &Courses, alone: bool) -> Section {
     let lines = |names: [(&str, &str); 2]| {
         let series = names
             .into_iter()
@@ -73,7 +73,7 @@ fn detail(one: &Courses, alone: bool) -> Result<Section, ReportError> {
     let both = |name, least| [("managed", name), ("least fuel", least)];
     let charge = lines(both("state_of_charge", "least_state_of_charge"));
     let power = lines(both("engine_power_w", "least_engine_power_w"));
-    Ok(Section::new(title)
+    Section::new(title)
         .with(Plot::new("State of charge", charge))
-        .with(Plot::new("Power of the engine", power)))
+        .with(Plot::new("Power of the engine", power))
 }

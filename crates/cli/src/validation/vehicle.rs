@@ -78,7 +78,23 @@ impl Told {
             ]
         };
         let rows: Vec<Vec<String>> = self.calibration.estimates.iter().map(row).collect();
-        table(&["free parameter", "before", "after", "95 % interval"], &rows)
+        let mut text = table(&["free parameter", "before", "after", "95 % interval"], &rows);
+        let bound: Vec<String> = self
+            .calibration
+            .estimates
+            .iter()
+            .filter(|estimate| estimate.at_bound)
+            .map(|estimate| format!("`{}`", estimate.name))
+            .collect();
+        if !bound.is_empty() {
+            let _ = writeln!(
+                text,
+                "\nAt its bound: {}. That is no value of the vehicle: the fit would go further, to what no such vehicle has, because the \
+                 parameter makes up for what the log or the model lacks.",
+                bound.join(", ")
+            );
+        }
+        text
     }
 
     /// Error of each signal over all runs.

@@ -75,7 +75,10 @@ mod tests {
     use super::*;
     use headland_trace::Origin;
 
-    fn trace(step_s: f64, channels: &[(&str, fn(f64) -> f64)]) -> Trace {
+    /// A channel over time.
+    type Channel = (&'static str, fn(f64) -> f64);
+
+    fn trace(step_s: f64, channels: &[Channel]) -> Trace {
         let time_s: Vec<f64> = (0..=100).map(|i| 5.0 + step_s * f64::from(i)).collect();
         let mut trace = Trace::new(time_s.clone()).unwrap();
         for (name, value) in channels {

@@ -18,6 +18,8 @@ use crate::{Case, DiagnoseError, System};
 const RISES: f64 = 0.02;
 /// What leaves less than this share of the error that there is without it is not idle, however good the nominal scenario is.
 const HELPS: f64 = 0.6;
+/// What leaves more than this share of the error that there is without it is not missed.
+const MISSED: f64 = 0.7;
 /// What is hardly beyond chance has to take this share of the error of runs held out.
 const BORNE_OUT: f64 = 0.1;
 
@@ -113,6 +115,14 @@ pub fn proven(
         withdrawn = true;
     }
     for place in (0..best.found.stand.parts.len()).rev() {
+        if is_slight(case, &best, place)
+            && let Some(found) = without(case, system, pool, &best.found, place)
+        {
+            let lesser = Proven::of(case, system, pool, found, events, by)?;
+            withdrawn |= best.proof.fitted.after < MISSED * lesser.proof.fitted.after;
+            best = lesser;
+            continue;
+        }
         if let Some(lesser) = without_idle(case, system, pool, &best, (events, by), place)? {
             // What was hardly there to begin with leaves nothing missing.
             withdrawn |= !is_faint(&best, place);
@@ -188,6 +198,16 @@ fn is_idle(with: &Errors, without: &Errors, (needed, faint): (f64, bool)) -> boo
     // Where the nominal scenario is further off, it is calibration that stands against a faint cause, and not nothing.
     let near = !faint || with.after > (1.0 - BORNE_OUT) * with.before;
     with.after > (1.0 - needed) * least && near
+}
+
+/// Whether a formula has less evidence than the best of all that were tried needs: a law of two terms is one of some ten
+/// thousand squared, and its constants are free. ln 10⁸ and a few for each constant.
+fn is_slight(case: &Case, best: &Proven, place: usize) -> bool {
+    /// Growth of ln p.
+    const OF_MANY: f64 = 40.0;
+    let trial = &best.found.stand.parts[place].trial;
+    let own = best.refined.causes.iter().find(|cured| cured.accepted.trial.columns == trial.columns);
+    case.causes[trial.cause].law.is_some() && own.is_some_and(|cured| cured.accepted.gain < OF_MANY)
 }
 
 /// Whether a listed cause of the world has hardly more evidence than the best of many has by chance.

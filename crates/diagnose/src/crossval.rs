@@ -4,21 +4,25 @@
 //!
 //! Source: Stone, *J. R. Stat. Soc. B* 36 (1974) 111, here over whole runs.
 
+use crate::catalogue::Form;
 use crate::gram::{Column, Whitened};
 use crate::noise::Noises;
 use crate::profile::Widths;
+use crate::rows::{Chunk, Row};
 use crate::state::{Chosen, Part, Stand, State};
+use headland_calibrate::statistics::sorted;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
 impl State<'_> {
     /// By how much ln p of runs that were left out grows with each cause of a set; none with a single run.
     pub fn predicted(&self, stand: &Stand) -> Option<Vec<f64>> {
-        let full = self.deviance(&stand.parts, stand)?;
+        let unseen = self.unseen(&stand.parts);
+        let full = self.deviance(&stand.parts, stand, &unseen)?;
         let without = |place: usize| {
             let mut parts = stand.parts.clone();
             parts.remove(place);
-            self.deviance(&parts, stand)
+            self.deviance(&parts, stand, &unseen)
         };
         (0..stand.parts.len()).map(|place| Some(0.5 * (without(place)? - full))).collect()
     }
@@ -37,14 +41,47 @@ impl State<'_> {
         Some(sums.iter().zip(counts).map(|(sum, count)| sum / count.max(1) as f64).collect())
     }
 
-    /// Sum of the squares of what is left, whitened, of runs that were each predicted by the others.
-    fn deviance(&self, parts: &[Part], stand: &Stand) -> Option<f64> {
+    /// The rows at places where no other fitted run was, by chunk: a map that is made without a run says nothing of them.
+    fn unseen(&self, parts: &[Part]) -> Vec<Vec<usize>> {
+        /// So far from where it is known a map still is, in lengths over which it stays alike.
+        const NEAR: f64 = 0.5;
+        let of_place = |part: &&Part| self.cause(&part.trial).form == Form::OverPosition;
+        let lengths = parts.iter().filter(of_place).filter_map(|part| Some(part.spread.as_ref()?.length));
+        let near_m = NEAR * lengths.fold(f64::INFINITY, f64::min);
+        let runs = &self.case.runs;
+        let places: Vec<Vec<f64>> = runs.iter().map(|run| sorted(&run.position_m)).collect();
+        let seen = |own: usize, at_m: f64| {
+            (0..runs.len())
+                .filter(|run| *run != own && self.fit[*run] && runs[*run].path == runs[own].path)
+                .any(|run| {
+                    let next = places[run].partition_point(|place| *place < at_m - near_m);
+                    places[run].get(next).is_some_and(|place| *place <= at_m + near_m)
+                })
+        };
+        let of_chunk = |chunk: &Chunk| {
+            if near_m.is_infinite() || !self.fit[chunk.run] {
+                return Vec::new();
+            }
+            let at_m = |row: &Row| row.mean(&runs[chunk.run].position_m);
+            let rows = chunk.rows.iter().enumerate();
+            rows.filter(|(_, row)| !seen(chunk.run, at_m(row))).map(|(number, _)| number).collect()
+        };
+        self.system.chunks.par_iter().map(of_chunk).collect()
+    }
+
+    /// Sum of the squares of what is left, whitened, of runs that were each predicted by the others; rows that are `unseen`
+    /// leave nothing.
+    fn deviance(&self, parts: &[Part], stand: &Stand, unseen: &[Vec<usize>]) -> Option<f64> {
         let chunks = &self.system.chunks;
         let whiteners = stand.noises.whiteners(chunks)?;
         let told = self.told_by_others(parts, &stand.noises)?;
         let of_run = |one: &Told| {
             let white = |(index, left): &(usize, DVector<f64>)| {
-                whiteners.white(*index, &chunks[*index], left).norm_squared()
+                let mut left = left.clone();
+                for row in &unseen[*index] {
+                    left[*row] = 0.0;
+                }
+                whiteners.white(*index, &chunks[*index], &left).norm_squared()
             };
             // What is known of the free parameters is known once, not once for every run.
             one.bent / told.len() as f64 + one.left.iter().map(white).sum::<f64>()

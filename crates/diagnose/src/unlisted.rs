@@ -19,8 +19,11 @@ const MARGIN: f64 = 6.0;
 /// And by this share of what the listed causes bring, for each that they are fewer than three: the shape of a listed cause
 /// is known from elsewhere, and a formula that is free to bend follows a recording closer than any law of physics.
 const BETTER: f64 = 0.1;
-/// By this share where it needs fewer causes than they do: two of them that patch each other are no knowledge.
+/// By this share where it needs fewer causes than they do, and functions are among those: two that patch each other are no
+/// knowledge.
 const SIMPLER: f64 = 0.03;
+/// And by no share where numbers alone patch each other: one term that says more than two of them would not, were they true.
+const PLAINER: f64 = 4.5;
 /// A law that brings this share of that is as good as they are.
 const DOUBT: f64 = 0.5;
 /// A law works in at least this share of the rows, by the participation ratio of its squares.
@@ -190,7 +193,7 @@ fn beside(
             let able = sound
                 && (clearly || simpler && more > -TOLERANCE)
                 && (simpler || !state.is_listed(&stand))
-                && !state.paraphrases(&stand, &found.stand);
+                && (simpler && clearly || !state.paraphrases(&stand, &found.stand));
             // What says it better than the listed causes, and not by enough, is a doubt of them, whatever it is like.
             let as_short = state.pieces(&stand) <= found.stand.parts.len();
             // So is what says as much in fewer numbers.
@@ -275,6 +278,9 @@ impl State<'_> {
     fn margin(&self, found: &Found, stand: &Stand) -> f64 {
         /// Causes that a law of so many terms less takes the place of.
         const PATCHES: usize = 2;
+        if self.simpler(stand, &found.stand) && found.stand.parts.iter().all(|part| part.spread.is_none()) {
+            return PLAINER;
+        }
         let (shapeless, shaped): (Vec<Part>, Vec<Part>) =
             found.stand.parts.iter().cloned().partition(|part| self.cause(&part.trial).by_run);
         let alone = if shapeless.is_empty() { None } else { self.settle(&shapeless, &found.stand.noises) };

@@ -286,6 +286,27 @@ fn torque_beside_fuel_tells_a_consumer_from_friction_in_the_engine() {
     }
 }
 
+/// A force that is told too large asks more of the engine than its torque and its fuel say, also where that is more than full
+/// load gives at the speed that was recorded: one scale says all three, and no mass and no friction beside it.
+#[test]
+fn a_force_sensor_with_a_wrong_scale_is_told_by_motion_shaft_and_fuel_alike() {
+    const SCALE: f64 = 1.25;
+    let mut recording = with_a_shaft("", 12.0, 1e-4);
+    for run in &mut recording.runs {
+        let force = run.trace.remove("tractive_force_n").unwrap();
+        let read = force.values.iter().map(|force| SCALE * force).collect();
+        run.trace.push("tractive_force_n", read, Origin::Measured).unwrap();
+    }
+    let registry = headland_stock::registry();
+    let found =
+        found_of_scenario(&with_an_engine(""), &recording, &Options::default(), &registry).unwrap().diagnosis;
+    assert_eq!(found.verdict, Verdict::SensorArtefact, "{}", found.answer);
+    let ids: Vec<&str> = found.findings.iter().map(|finding| finding.id.as_str()).collect();
+    assert_eq!(ids, ["force_scale"], "{}", found.answer);
+    let scale = found.findings[0].parameters[0].value;
+    assert!((scale / SCALE - 1.0).abs() < 0.01, "{scale}: {}", found.answer);
+}
+
 /// Where the true cause is not in the library, no other is claimed as if it were certain.
 #[test]
 fn without_the_true_cause_no_listed_one_is_claimed_in_silence() {

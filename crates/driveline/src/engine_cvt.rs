@@ -143,8 +143,13 @@ impl EngineCvt {
         let force = demand.force_n.clamp(-self.max_force_n, self.max_force_n);
         let power = force * v;
         let kept = demand.engine_speed_rad_s;
-        let full =
-            if kept > 0.0 { self.curve.power(self.least_speed(kept)) } else { self.curve.peak_power() };
+        let full = if demand.recorded {
+            f64::INFINITY
+        } else if kept > 0.0 {
+            self.curve.power(self.least_speed(kept))
+        } else {
+            self.curve.peak_power()
+        };
         let most = eta * (full - others).max(0.0);
         let friction = self.friction_w(self.curve.last_speed(), demand.engine_friction_n_m);
         let least = -(friction + others) / eta;

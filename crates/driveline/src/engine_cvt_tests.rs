@@ -182,6 +182,19 @@ fn an_engine_that_is_kept_at_a_speed_runs_at_it_and_gives_what_it_has_there() {
     assert!(imbalance_w(&engine(), &demand).abs() < 1e-6);
 }
 
+/// 60 kN at 10 m/s were recorded: 600 kW / 0.85 + 8 kW at the shaft, at 170 rad/s, where full load is 247 kW.
+#[test]
+fn full_load_bounds_nothing_that_was_recorded() {
+    for engine_speed_rad_s in [0.0, 170.0] {
+        let demand = Demand { engine_speed_rad_s, recorded: true, ..asked(10.0, 60e3) };
+        let delivery = engine().deliver(&demand, &[], &mut []);
+        assert_eq!(delivery.force_n, 60e3);
+        let shaft_w = delivery.readings.engine_torque_n_m * delivery.readings.engine_speed_rad_s;
+        assert!((shaft_w - (600e3 / 0.85 + 8e3)).abs() < 1e-6, "{shaft_w}");
+        assert!(imbalance_w(&engine(), &demand).abs() < 1e-6);
+    }
+}
+
 /// What an engine shows on its instruments makes the force that it was asked for, in overrun too.
 #[test]
 fn a_recorded_shaft_tells_the_force_that_went_with_it() {

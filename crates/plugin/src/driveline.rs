@@ -26,6 +26,9 @@ pub struct Demand {
     pub battery_resistance_ohm: f64,
     /// Speed at which the driver keeps the engine by hand, as for the power take-off [rad/s]; 0 where the driveline chooses.
     pub engine_speed_rad_s: f64,
+    /// Whether the force was recorded: then it was there, whatever the full load of a model's engine would have allowed at a
+    /// speed that a sensor told.
+    pub recorded: bool,
 }
 
 /// What was recorded of an engine, and of what takes its power beside the wheels.

@@ -296,6 +296,7 @@ impl Model {
             engine_friction_n_m: sums.engine_friction_n_m,
             battery_resistance_ohm: sums.battery_resistance_ohm,
             engine_speed_rad_s: given.engine_speed_rad_s,
+            recorded: matches!(command, Command::Recorded(_)),
         };
         let asked = Asked {
             situation,

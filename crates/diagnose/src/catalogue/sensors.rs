@@ -43,7 +43,7 @@ pub fn sensors(all: &mut Vec<Cause>, around: &Around) {
         );
         all.push(artefact(
             "force_scale",
-            &[Kind::Motion, Kind::Battery],
+            &[Kind::Motion, Kind::Battery, Kind::Fuel],
             linear("scale", "1", 0.05).within(-MOST_SCALE, MOST_SCALE),
             "F_measured = (1 + k) F",
             "a force sensor with a wrong scale",
@@ -52,7 +52,7 @@ pub fn sensors(all: &mut Vec<Cause>, around: &Around) {
     }
     all.push(artefact(
         "speed_scale",
-        &[Kind::Motion, Kind::Slip, Kind::Battery],
+        &[Kind::Motion, Kind::Slip, Kind::Battery, Kind::Fuel],
         linear("scale", "1", 0.03).within(-MOST_SCALE, MOST_SCALE),
         "v_measured = (1 + k) v",
         "a speed sensor with a wrong scale",

@@ -1,7 +1,9 @@
 //! Causes beside others, at their size, and on runs that they were not fitted to.
 
-use super::setting::{found, named, recorded};
+use super::setting::{found, named, recorded, recording_of};
+use headland_calibrate::statistics::Draws;
 use headland_diagnose::{FindingKind, Options, Verdict};
+use headland_trace::Trace;
 
 /// A storm pushes with the square of its speed: in proportion to a breeze it would be told far too weak or too strong.
 #[test]
@@ -104,6 +106,46 @@ fn a_map_is_claimed_though_the_lane_that_is_held_out_has_nothing_on_it() {
     }
     let found = found(&recording, &Options::default()).unwrap();
     assert!(named(&found, "soft_ground"), "{}", found.diagnosis.answer);
+}
+
+/// Two runs teach each other what they share of a lane: where only one of them was, the other says nothing of it, and that is
+/// nothing against slopes.
+#[test]
+fn slopes_are_claimed_though_each_run_saw_only_a_part_of_the_lane() {
+    const BOTH_M: std::ops::Range<f64> = 55.0..75.0;
+    let hidden = "grade(positions_m: [0.0, 12.0, 26.0, 40.0, 52.0, 66.0, 80.0, 94.0, 108.0, 122.0], \
+                  grades: [0.0, 0.02, -0.015, 0.02, -0.02, 0.015, -0.01, 0.015, -0.02, 0.01])";
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.004 * draws.normal(),
+        "motor_torque_n_m" => value + 0.5 * draws.normal(),
+        "battery_voltage_v" | "battery_current_a" => value + 0.2 * draws.normal(),
+        _ => value,
+    };
+    let channels = [
+        "speed_m_s",
+        "position_m",
+        "heading_rad",
+        "motor_torque_n_m",
+        "battery_voltage_v",
+        "battery_current_a",
+    ];
+    let mut recording = recording_of((0.069, hidden), &headland_stock::registry(), &channels, (11, &noisy));
+    recording.runs.drain(2..4);
+    for (run, wanted) in [(0, f64::NEG_INFINITY..BOTH_M.end), (1, BOTH_M.start..f64::INFINITY)] {
+        let trace = recording.runs[run].trace.clone();
+        let place = |at_m: f64| trace.get("position_m").unwrap().partition_point(|position| *position < at_m);
+        let samples = place(wanted.start)..place(wanted.end);
+        let mut part = Trace::new(trace.time_s()[samples.clone()].to_vec()).unwrap();
+        for channel in trace.channels() {
+            part.push(channel.name.clone(), channel.values[samples.clone()].to_vec(), channel.origin)
+                .unwrap();
+        }
+        recording.runs[run].trace = part;
+    }
+    let found = found(&recording, &Options::default()).unwrap();
+    assert!(named(&found, "grade"), "{}", found.diagnosis.answer);
+    let fit = found.diagnosis.fit.held_out.unwrap();
+    assert!(fit.rmse_after < 0.4 * fit.rmse_before, "{}", found.diagnosis.answer);
 }
 
 /// A road that rises and falls as waves do: a map holds the wave as well as everything else that the road does.

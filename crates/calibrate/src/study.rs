@@ -134,6 +134,17 @@ const SMOOTHING_SAMPLES: f64 = 5.0;
 const LONG_S: f64 = 180.0;
 /// Their length [s].
 const WINDOW_S: f64 = 30.0;
+/// The channel that says whether the vehicle rolls free.
+const COASTING: &str = "coasting";
+/// Channels that only a vehicle has that something drives.
+const DRIVING: [&str; 6] = [
+    "tractive_force_n",
+    "motor_torque_n_m",
+    "engine_torque_n_m",
+    "fuel_rate_kg_s",
+    "battery_current_a",
+    "state_of_charge",
+];
 
 impl<'a> Study<'a> {
     /// Brings a scenario and a recording together.
@@ -463,6 +474,12 @@ fn measured(
     derive(&mut trace, Origin::Measured)?;
     let settings = &scenario.replay;
     let drive = settings.drive.unwrap_or_else(|| drive_of(&trace, model));
+    if drive == Drive::Coast && trace.get(COASTING).is_none() {
+        let why =
+            if settings.drive.is_some() { "the scenario says so" } else { "its driveline never drives" };
+        notes.push(format!("taken to coast throughout, which no channel says: {why}"));
+        trace.push(COASTING, vec![1.0; trace.len()], Origin::Driven)?;
+    }
     let also = settings.inputs.clone().unwrap_or_else(|| inputs_of(&trace, drive));
     let period_s = trace.period_s();
     let smoothing_s = settings.smoothing_s.unwrap_or(SMOOTHING_SAMPLES * period_s);
@@ -507,10 +524,12 @@ fn path_length_m(recording: &Recording, path: Option<&str>) -> f64 {
     recording.runs.iter().filter(|run| run.path.as_deref() == path).map(of_run).fold(0.0, f64::max)
 }
 
-/// What can drive the model best: rolling free, a recorded force, a recorded torque, and else the speed.
+/// What can drive the model best: rolling free, a recorded force, a recorded torque, and else the speed. A driveline that
+/// never drives coasts where nothing was recorded that could have driven.
 fn drive_of(trace: &Trace, model: &Model) -> Drive {
     let coasts = |values: &[f64]| values.iter().all(|value| *value >= 0.5);
-    if trace.get("coasting").is_some_and(coasts) {
+    let driven = |name: &&str| trace.get(name).is_some();
+    if trace.get(COASTING).map_or(!model.driveline.drives() && !DRIVING.iter().any(driven), coasts) {
         Drive::Coast
     } else if trace.get("tractive_force_n").is_some() {
         Drive::Force

@@ -24,8 +24,8 @@ pub enum DiagnoseError {
     /// No balance can be made of what was measured.
     #[error(
         "nothing can be concluded: no balance can be made of the channels {}; it would take tractive_force_n, a torque, \
-         or coasting (motion), specific_force_m_s2 (parity), wheel_speed_m_s (slip), battery_voltage_v and \
-         battery_current_a (battery), or fuel_rate_kg_s (fuel)",
+         or coasting (motion; where nothing drove, `replay: (drive: Coast)` of the scenario says so), specific_force_m_s2 \
+         (parity), wheel_speed_m_s (slip), battery_voltage_v and battery_current_a (battery), or fuel_rate_kg_s (fuel)",
         channels.join(", ")
     )]
     NoBalance {

@@ -3,6 +3,7 @@
 use crate::balance::Kind;
 use crate::catalogue::Cause;
 use crate::noise::{Noises, Whiteners};
+use crate::rows::Row;
 use crate::state::{Part, State};
 use crate::trial::{Pool, effect, lost_drive_n};
 use crate::{Case, DiagnoseError, System};
@@ -54,10 +55,15 @@ impl Sought {
 
     /// What a balance's rows are made of, of what a formula says of a run; nothing where it does not show there.
     pub fn samples(&self, kind: Kind, run: usize, said: &[f64]) -> Vec<f64> {
+        self.samples_of_every(1, kind, run, said)
+    }
+
+    /// As [`Sought::samples`], of every so many samples of the run.
+    fn samples_of_every(&self, every: usize, kind: Kind, run: usize, said: &[f64]) -> Vec<f64> {
         let Some((_, per_unit)) = self.per_unit.iter().find(|(own, _)| *own == kind) else {
             return Vec::new();
         };
-        let whole = |index: usize| self.whole.as_ref().map_or(1.0, |whole| whole[run][index]);
+        let whole = |index: usize| self.whole.as_ref().map_or(1.0, |whole| whole[run][every * index]);
         said.iter().enumerate().map(|(index, value)| per_unit * whole(index) * value).collect()
     }
 
@@ -93,6 +99,8 @@ struct Whitening<'a> {
     system: &'a System,
     whiteners: Whiteners,
     sought: &'a Sought,
+    /// Every how many samples of each run one is looked at.
+    every: Vec<usize>,
 }
 
 impl Whitening<'_> {
@@ -108,12 +116,30 @@ impl Whitening<'_> {
 
 impl Rows for Whitening<'_> {
     fn rows(&self, run: usize, samples: &[f64]) -> Vec<f64> {
-        let samples = self.sought.samples(self.sought.kind, run, samples);
+        let every = self.every[run];
+        let samples = self.sought.samples_of_every(every, self.sought.kind, run, samples);
         self.of(run, |index| {
             let rows = &self.system.chunks[index].rows;
-            nalgebra::DVector::from_iterator(rows.len(), rows.iter().map(|row| row.mean(&samples)))
+            nalgebra::DVector::from_iterator(
+                rows.len(),
+                rows.iter().map(|row| row.mean_of_every(every, &samples)),
+            )
         })
     }
+
+    fn every(&self, run: usize) -> usize {
+        self.every[run]
+    }
+}
+
+/// Every how many samples of a run one is enough for the rows of a balance: a wave that rows show takes four blocks.
+fn every(system: &System, kind: Kind, run: usize) -> usize {
+    /// Samples of a block that are looked at, at least.
+    const SAMPLES: usize = 6;
+    let own = system.chunks.iter().filter(|chunk| chunk.run == run && system.kind(chunk) == kind);
+    let block = |row: &Row| (row.samples[2] - row.samples[0]) / 2;
+    let least = own.flat_map(|chunk| &chunk.rows).map(block).min();
+    least.map_or(1, |samples| (samples / SAMPLES).max(1))
 }
 
 /// The law that is worth it, beside what is known, and behind it the best of fewer terms.
@@ -127,8 +153,9 @@ pub fn laws(
 ) -> Result<Vec<Law>, DiagnoseError> {
     let Some(whiteners) = noises.whiteners(&system.chunks) else { return Ok(Vec::new()) };
     let state = State { case, system, pool, fit: &case.fit };
-    let whitening = Whitening { system, whiteners, sought };
     let runs = 0..case.runs.len();
+    let every = runs.clone().map(|run| every(system, sought.kind, run)).collect();
+    let whitening = Whitening { system, whiteners, sought, every };
     // What a function does is taken away; all other causes are free beside the law.
     let stand =
         if beside.iter().any(|part| part.spread.is_some()) { state.settle(beside, noises) } else { None };

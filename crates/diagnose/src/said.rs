@@ -68,8 +68,9 @@ fn say(model: &Model, run: &Recorded, kinds: &[Kind]) -> Result<Said, DiagnoseEr
     let resistance = |i: usize| tractive[i] - brake.map_or(0.0, |brake| brake[i]) - mass[i] * acceleration[i];
     let resistance_n = (0..tractive.len()).map(resistance).collect();
     let powers = kinds.iter().any(|kind| kind.is_power() || *kind == Kind::Voltage);
-    let by_torque =
-        trace.get("motor_torque_n_m").is_some() && model.driveline.force_of_torque_n(1.0, 1.0).is_some();
+    let by_torque = drive != Drive::Torque
+        && trace.get("motor_torque_n_m").is_some()
+        && model.driveline.force_of_torque_n(1.0, 1.0).is_some();
     let by_torque = (powers && by_torque)
         .then(|| replayed(&Replay { drive: Drive::Torque, window_s: Some(POINTWISE_S), ..how.clone() }))
         .transpose()?;

@@ -9,6 +9,8 @@
 mod beside;
 #[path = "diagnose/channels.rs"]
 mod channels;
+#[path = "diagnose/coasts.rs"]
+mod coasts;
 #[path = "diagnose/hurt.rs"]
 mod hurt;
 mod setting;

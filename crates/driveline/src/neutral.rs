@@ -37,6 +37,10 @@ impl Driveline for Neutral {
         0.0
     }
 
+    fn drives(&self) -> bool {
+        false
+    }
+
     fn deliver(&self, demand: &Demand, _: &[f64], _: &mut [f64]) -> Delivery {
         Delivery { source_power_w: demand.auxiliary_power_w + demand.shaft_power_w, ..Delivery::NOTHING }
     }
@@ -53,6 +57,7 @@ mod tests {
         let delivery = neutral.deliver(&demand, &[], &mut []);
         assert_eq!((delivery.force_n, delivery.source_power_w), (0.0, 200.0));
         assert_eq!(neutral.force_of_torque_n(100.0, 5.0), None);
+        assert!(!neutral.drives());
     }
 
     #[test]

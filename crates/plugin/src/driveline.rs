@@ -151,6 +151,11 @@ pub trait Driveline: Debug + Send + Sync {
         0.0
     }
 
+    /// Whether it can drive at all: what cannot only rolls.
+    fn drives(&self) -> bool {
+        true
+    }
+
     /// Whether two stores have to be managed.
     fn needs_management(&self) -> bool {
         false

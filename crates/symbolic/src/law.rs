@@ -195,7 +195,7 @@ fn polar(amplitudes: &[f64], covariance: &DMatrix<f64>) -> (Known1, Option<Known
 
 fn predict(bench: &Bench, law: &Polished, run: usize) -> Vec<f64> {
     let columns: Vec<Vec<f64>> =
-        law.terms.iter().flat_map(|term| term.samples(&bench.variables, run)).collect();
+        law.terms.iter().flat_map(|term| term.all_samples(&bench.variables, run)).collect();
     let length = columns.first().map_or(0, Vec::len);
     let sum = |at: usize| columns.iter().zip(&law.amplitudes).map(|(column, share)| share * column[at]).sum();
     (0..length).map(sum).collect()

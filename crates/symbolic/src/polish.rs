@@ -128,29 +128,35 @@ fn solve(bench: &Bench, terms: Vec<Term>, columns: &[Vec<f64>]) -> Option<Polish
     })
 }
 
-/// Derivative of a law's rows by one of its inner constants.
+/// Derivative of a law's rows by one of its inner constants. Only the factor that holds it is taken twice.
 fn slope(bench: &Bench, terms: &[Term], amplitudes: &[f64], (index, factor, free): Place) -> Vec<f64> {
     let first: usize = terms[..index].iter().map(Term::width).sum();
-    let share = &amplitudes[first..first + terms[index].width()];
+    let term = &terms[index];
+    let share = &amplitudes[first..first + term.width()];
+    let own = term.factors[factor];
+    let of = &bench.variables[own.variable];
     let moved = |by: f64| {
-        let mut term = terms[index].clone();
-        let of = &bench.variables[term.factors[factor].variable];
-        let inner = term.factors[factor].inner(free, of) + by;
-        term.factors[factor].set_inner(free, inner, of);
-        term
+        let mut moved = own;
+        moved.set_inner(free, own.inner(free, of) + by, of);
+        moved
     };
-    let sum = |term: &Term, run: usize| {
-        let columns = term.samples(&bench.variables, run);
-        let mut sum = vec![0.0; columns[0].len()];
-        for (column, share) in columns.iter().zip(share) {
-            add(&mut sum, *share, column);
-        }
-        sum
-    };
+    // Beside a factor with a phase the one that moves has no amplitude of its own.
+    let phased = term.factors.iter().any(|factor| factor.shape.has_phase()) && !own.shape.has_phase();
+    let inner: &[f64] = if phased { &[1.0] } else { share };
     let (below, above) = (moved(-NUDGE), moved(NUDGE));
     bench.rows(|run| {
-        let (below, above) = (sum(&below, run), sum(&above, run));
-        above.iter().zip(below).map(|(above, below)| (above - below) / (2.0 * NUDGE)).collect()
+        let mut slope: Vec<f64> = of.seen[run]
+            .iter()
+            .map(|u| (above.sized(*u, of, inner) - below.sized(*u, of, inner)) / (2.0 * NUDGE))
+            .collect();
+        for (_, other) in term.factors.iter().enumerate().filter(|(place, _)| *place != factor) {
+            let of = &bench.variables[other.variable];
+            let share = if other.shape.has_phase() { share } else { &[1.0] };
+            for (slope, u) in slope.iter_mut().zip(of.seen[run].iter()) {
+                *slope *= other.sized(*u, of, share);
+            }
+        }
+        slope
     })
 }
 

@@ -56,8 +56,15 @@ impl Target {
 /// For a weak form: means of the samples with the test function as weight, then the inverse of a Cholesky factor of the
 /// rows' covariance.
 pub trait Rows: Sync {
-    /// The rows of one run; `samples` are in the unit of the target, one for each sample of the run.
+    /// The rows of one run; `samples` are in the unit of the target, one for every so many samples of the run as
+    /// [`Rows::every`] says, from the first on.
     fn rows(&self, run: usize, samples: &[f64]) -> Vec<f64>;
+
+    /// Every how many samples of a run one is enough for its rows: what is averaged over many need not be worked out for all.
+    fn every(&self, run: usize) -> usize {
+        let _ = run;
+        1
+    }
 }
 
 /// A free parameter of the model that is estimated beside every law.
@@ -109,7 +116,7 @@ pub(crate) struct Bench<'a> {
 
 impl<'a> Bench<'a> {
     pub fn new(problem: &Problem<'a>) -> Result<Self, SymbolicError> {
-        let variables = check(problem.variables, problem.fit, problem.target)?;
+        let mut variables = check(problem.variables, problem.fit, problem.target)?;
         let runs = problem.residual.len();
         for variable in problem.variables {
             length(&format!("`{}`", variable.name), runs, variable.runs.len(), runs)?;
@@ -121,6 +128,9 @@ impl<'a> Bench<'a> {
                     problem.variables[0].runs[run].len(),
                 )?;
             }
+        }
+        for variable in &mut variables {
+            variable.look_at_every(|run| problem.rows.every(run));
         }
         length("the choice of runs", runs, problem.fit.len(), runs)?;
         for (index, nuisance) in problem.nuisances.iter().enumerate() {

@@ -149,6 +149,12 @@ impl Factor {
         (value, 0.0)
     }
 
+    /// Its value at a sample, with the amplitudes of sine and cosine where it has a phase and else with the one that there is.
+    pub fn sized(&self, u: f64, of: &Checked, share: &[f64]) -> f64 {
+        let (value, cosine) = self.value(u, of);
+        share.get(1).map_or(share[0] * value, |other| share[0] * value + other * cosine)
+    }
+
     /// As text, with the names of its scale, centre, phase, and power or level.
     pub fn text(&self, of: &Checked, [scale, centre, phase, power]: [&str; 4]) -> String {
         let name = of.known.name;

@@ -37,14 +37,27 @@ impl Term {
         if self.factors.iter().any(|factor| factor.shape.has_phase()) { 2 } else { 1 }
     }
 
-    /// Its columns in one run, sample by sample.
+    /// Its columns in one run, at every sample that the rows look at.
     pub fn samples(&self, variables: &[Checked], run: usize) -> Vec<Vec<f64>> {
-        let length = self.factors.first().map_or(0, |first| variables[first.variable].runs[run].len());
+        self.along(variables, |of| &of.seen[run])
+    }
+
+    /// Its columns in one run, at every sample.
+    pub fn all_samples(&self, variables: &[Checked], run: usize) -> Vec<Vec<f64>> {
+        self.along(variables, |of| &of.runs[run])
+    }
+
+    fn along<'a, 'b: 'a>(
+        &self,
+        variables: &'a [Checked<'b>],
+        values: impl Fn(&'a Checked<'b>) -> &'a [f64],
+    ) -> Vec<Vec<f64>> {
+        let length = self.factors.first().map_or(0, |first| values(&variables[first.variable]).len());
         let mut envelope = vec![1.0; length];
         let mut phased: Option<(Vec<f64>, Vec<f64>)> = None;
         for factor in &self.factors {
             let of = &variables[factor.variable];
-            let values = of.runs[run].iter().map(|u| factor.value(*u, of));
+            let values = values(of).iter().map(|u| factor.value(*u, of));
             if factor.shape.has_phase() {
                 phased = Some(values.unzip());
             } else {

@@ -6,6 +6,7 @@
 use crate::SymbolicError;
 use crate::problem::Target;
 use headland_units::parse_unit;
+use std::borrow::Cow;
 
 /// A quantity that may stand in a law, sample by sample.
 #[derive(Clone, Debug)]
@@ -87,6 +88,8 @@ pub(crate) const KNOWN: [Known; 18] = [
 pub(crate) struct Checked<'a> {
     pub known: &'static Known,
     pub runs: &'a [Vec<f64>],
+    /// Those samples that the rows look at.
+    pub seen: Vec<Cow<'a, [f64]>>,
     /// Least and greatest value in the runs that are fitted.
     pub low: f64,
     pub high: f64,
@@ -99,6 +102,16 @@ pub(crate) struct Checked<'a> {
 }
 
 impl Checked<'_> {
+    /// Leaves only every so many samples of each run to be seen.
+    pub fn look_at_every(&mut self, every: impl Fn(usize) -> usize) {
+        for (run, seen) in self.seen.iter_mut().enumerate() {
+            let every = every(run);
+            if every > 1 {
+                *seen = self.runs[run].iter().copied().step_by(every).collect();
+            }
+        }
+    }
+
     /// How far its values reach.
     pub fn spread(&self) -> f64 {
         self.high - self.low
@@ -178,8 +191,9 @@ pub(crate) fn check<'a>(
         steps.sort_by(f64::total_cmp);
         let step = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
         let negative = variable.runs.iter().flatten().any(|value| *value < 0.0);
-        let checked =
-            Checked { known, runs: &variable.runs, low, high, negative, step, finest: variable.finest };
+        let seen = variable.runs.iter().map(|values| Cow::Borrowed(values.as_slice())).collect();
+        let (runs, finest) = (variable.runs.as_slice(), variable.finest);
+        let checked = Checked { known, runs, seen, low, high, negative, step, finest };
         if checked.spread() > LEAST_SPREAD * checked.size() {
             all.push(checked);
         }

@@ -62,7 +62,27 @@ pub struct Around {
 /// Nobody measures in a stronger wind than a fresh gale, 8 on Beaufort's scale.
 const MOST_WIND_M_S: f64 = 20.0;
 
+/// A law of speed says nothing about its own level at a reference that is slower [m/s].
+const SLOWEST_REFERENCE_M_S: f64 = 0.5;
+
 const MOTION: &[Kind] = &[Kind::Motion, Kind::Battery, Kind::Fuel];
+
+/// A rolling resistance that depends otherwise on speed, with the stated level at a speed.
+fn speed_law(around: &Around, reference_m_s: f64) -> Cause {
+    let [reference_m_s, usual_m_s] =
+        [reference_m_s, around.speeds_m_s[2]].map(|speed| speed.max(SLOWEST_REFERENCE_M_S));
+    let linear = linear("linear", "1", 0.015 * reference_m_s / usual_m_s);
+    cause(
+        "rolling_speed_law",
+        MOTION,
+        vec![linear, shape("reference_speed_m_s", "m/s").held(reference_m_s)],
+        "F = Δc (v/v₀ − 1) N",
+        &["speed_m_s"],
+        "rolling resistance that depends otherwise on speed",
+        "tow or coast at 2, 5, 10 and 20 km/h",
+    )
+    .shaped(vec![vec![reference_m_s]])
+}
 
 /// A time constant; what takes several times as long as the longest run does not change within it, and no oil or tyre warms
 /// up within seconds.
@@ -357,19 +377,9 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             "a different level of rolling resistance",
             "drive both directions, coasting and driven, with two masses",
         ),
-        cause(
-            "rolling_speed_law",
-            MOTION,
-            vec![
-                linear("linear", "1", 0.015),
-                shape("reference_speed_m_s", "m/s").held(around.speeds_m_s[2].max(0.5)),
-            ],
-            "F = Δc (v/v₀ − 1) N",
-            &["speed_m_s"],
-            "rolling resistance that depends otherwise on speed",
-            "tow or coast at 2, 5, 10 and 20 km/h",
-        )
-        .shaped(vec![vec![around.speeds_m_s[2].max(0.5)]]),
+        // The level is known at a speed that nobody states: as often as not at walking pace.
+        speed_law(around, around.speeds_m_s[2]),
+        speed_law(around, 0.0),
         cause(
             "rolling_temperature",
             MOTION,

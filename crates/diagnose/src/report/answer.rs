@@ -48,7 +48,7 @@ pub fn report(
     let verdict = if beside.withheld.is_some() {
         Verdict::CannotTell
     } else {
-        verdict(&findings, fit.lack_of_fit, timed(refined), strain.map_or(0.0, |(_, strain)| strain))
+        verdict(&findings, &fit, timed(refined), strain.map_or(0.0, |(_, strain)| strain))
     };
     notes.extend(remarks(case, &found.unproven));
     let mut null_space = refined.null_space.clone();

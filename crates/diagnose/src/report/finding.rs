@@ -1,6 +1,6 @@
 //! The findings: what each cause amounts to, where it works, and how sure it is.
 
-use super::{FindingKind, FindingReport, Interval, ParameterReport, RivalReport, Verdict};
+use super::{FindingKind, FindingReport, Fit, Interval, ParameterReport, RivalReport, Verdict};
 use crate::balance::{Kind, System};
 use crate::catalogue::{Cause, Class, Form};
 use crate::events::Event;
@@ -125,22 +125,24 @@ impl FindingReport {
 /// What a diagnosis says in a word. Beside what is certain, one cause in doubt leaves open what is missing; it takes nothing
 /// from a sensor's fault. Where far more than noise is left, something is missing all the same: no cause is claimed then, or
 /// what is claimed may stand in for it, unless it is `timed` and no run can show it of another. A free parameter that ends so
-/// many standard deviations (`strain`) from what was known of it stands in for something as well.
-pub fn verdict(findings: &[FindingReport], lack_of_fit: f64, timed: bool, strain: f64) -> Verdict {
+/// many standard deviations (`strain`) from what was known of it stands in for something as well. What makes the error grow in
+/// runs that it never saw is not certain either, whatever it is.
+pub fn verdict(findings: &[FindingReport], fit: &Fit, timed: bool, strain: f64) -> Verdict {
     /// An error of so many times the noise is no matter of how well the noise is known.
     const FAR: f64 = 10.0;
     /// A parameter that is so far from its prior is not a little wrong: one in a thousand is.
     const STRAINED: f64 = 3.3;
     /// Beside what was found, which may be mistaken by as much as its own error allows, it has to be further.
     const STRAINED_BESIDE: f64 = 4.0;
-    let far = lack_of_fit > FAR;
+    let far = fit.lack_of_fit > FAR;
     let any = |kind: FindingKind| findings.iter().any(|finding| finding.kind == kind);
     let Some(first) = findings.first() else {
         return if far || strain > STRAINED { Verdict::CannotTell } else { Verdict::None };
     };
     let strained = strain > STRAINED_BESIDE && !any(FindingKind::Artefact);
-    let doubtful = any(FindingKind::Physics) && far && !timed || strained;
-    if first.kind == FindingKind::Unlisted && !first.is_doubtful() && !strained {
+    let hurt = fit.grows() && (any(FindingKind::Physics) || any(FindingKind::Unlisted));
+    let doubtful = any(FindingKind::Physics) && far && !timed || strained || hurt;
+    if first.kind == FindingKind::Unlisted && !first.is_doubtful() && !strained && !hurt {
         Verdict::Unlisted
     } else if first.is_doubtful()
         || doubtful
@@ -378,7 +380,7 @@ fn experiment(cause: &Cause, cured: &Cured, case: &Case) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::RivalReport;
+    use crate::report::{FitRuns, RivalReport};
 
     fn finding(kind: FindingKind, id: &str, rival: Option<&str>) -> FindingReport {
         let rival =
@@ -399,13 +401,19 @@ mod tests {
         }
     }
 
+    /// An error of 1 in runs that were held out, and what becomes of it.
+    fn fit(lack_of_fit: f64, after: f64) -> Fit {
+        let runs = || FitRuns { runs: Vec::new(), rmse_before: 1.0, rmse_after: after, noise: 0.1 };
+        Fit { signal: "speed_m_s".to_owned(), fitted: runs(), held_out: Some(runs()), lack_of_fit }
+    }
+
     #[test]
     fn one_cause_in_doubt_leaves_open_what_is_missing_and_takes_nothing_from_a_sensors_fault() {
         use FindingKind::{Artefact, Physics};
         let sure = || finding(Physics, "wind", None);
         let doubtful = || finding(Physics, "grade", Some("soft_ground"));
         let fault = || finding(Artefact, "accelerometer_bias", Some("accelerometer_tilt"));
-        let verdict = |findings: &[FindingReport]| super::verdict(findings, 3.0, false, 1.0);
+        let verdict = |findings: &[FindingReport]| super::verdict(findings, &fit(3.0, 0.1), false, 1.0);
         assert_eq!(verdict(&[]), Verdict::None);
         assert_eq!(verdict(&[sure()]), Verdict::MissingPhysics);
         assert_eq!(verdict(&[sure(), doubtful()]), Verdict::CannotTell);
@@ -424,17 +432,33 @@ mod tests {
         use FindingKind::{Artefact, Physics};
         let sure = [finding(Physics, "wind", None)];
         let fault = [finding(Artefact, "latency", None)];
-        assert_eq!(verdict(&[], 40.0, false, 0.0), Verdict::CannotTell);
-        assert_eq!(verdict(&[], f64::NAN, false, 0.0), Verdict::None);
-        assert_eq!(verdict(&sure, 40.0, false, 0.0), Verdict::CannotTell);
-        assert_eq!(verdict(&sure, 40.0, true, 0.0), Verdict::MissingPhysics);
-        assert_eq!(verdict(&fault, 40.0, false, 0.0), Verdict::SensorArtefact);
+        let verdict = |findings: &[FindingReport], lack_of_fit: f64, timed: bool| {
+            super::verdict(findings, &fit(lack_of_fit, 0.1), timed, 0.0)
+        };
+        assert_eq!(verdict(&[], 40.0, false), Verdict::CannotTell);
+        assert_eq!(verdict(&[], f64::NAN, false), Verdict::None);
+        assert_eq!(verdict(&sure, 40.0, false), Verdict::CannotTell);
+        assert_eq!(verdict(&sure, 40.0, true), Verdict::MissingPhysics);
+        assert_eq!(verdict(&fault, 40.0, false), Verdict::SensorArtefact);
+    }
+
+    #[test]
+    fn what_hurts_in_runs_that_it_never_saw_is_no_certainty() {
+        use FindingKind::{Artefact, Physics, Unlisted};
+        let verdict =
+            |kind, id, after: f64| super::verdict(&[finding(kind, id, None)], &fit(3.0, after), true, 0.0);
+        assert_eq!(verdict(Physics, "auxiliary_power", 1.01), Verdict::MissingPhysics);
+        assert_eq!(verdict(Physics, "auxiliary_power", 1.1), Verdict::CannotTell);
+        assert_eq!(verdict(Unlisted, "unlisted", 1.1), Verdict::CannotTell);
+        assert_eq!(verdict(Artefact, "stuck_channel", 1.1), Verdict::SensorArtefact);
+        assert_eq!(super::verdict(&[], &fit(3.0, 1.1), false, 0.0), Verdict::None);
     }
 
     #[test]
     fn a_parameter_far_from_what_was_known_of_it_stands_in_for_something() {
         use FindingKind::{Artefact, Physics, Unlisted};
-        let verdict = |findings: &[FindingReport], strain: f64| super::verdict(findings, 1.0, false, strain);
+        let verdict =
+            |findings: &[FindingReport], strain: f64| super::verdict(findings, &fit(1.0, 0.1), false, strain);
         assert_eq!(verdict(&[], 2.5), Verdict::None);
         assert_eq!(verdict(&[], 3.5), Verdict::CannotTell);
         assert_eq!(verdict(&[finding(Physics, "wind", None)], 3.5), Verdict::MissingPhysics);

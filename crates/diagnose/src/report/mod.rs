@@ -139,6 +139,23 @@ pub struct Fit {
     pub lack_of_fit: f64,
 }
 
+/// An error that grows by more than this has grown.
+const WORSE: f64 = 1.02;
+
+impl FitRuns {
+    /// Whether what was found made the error greater.
+    pub(crate) fn grows(&self) -> bool {
+        self.rmse_after > WORSE * self.rmse_before
+    }
+}
+
+impl Fit {
+    /// Whether what was found made the error greater in the runs that it never saw.
+    pub(crate) fn grows(&self) -> bool {
+        self.held_out.as_ref().is_some_and(FitRuns::grows)
+    }
+}
+
 /// A free parameter.
 #[derive(Clone, Debug, Serialize)]
 pub struct Calibrated {

@@ -49,12 +49,15 @@ pub fn answer(told: &Told) -> String {
                 .to_owned(),
         ),
         Verdict::CannotTell if told.withheld.is_none() => sentences.push(
-            if !told.findings.iter().any(FindingReport::is_doubtful) {
-                "More is missing than was found, and what was found may stand in for it, so that nothing of it is certain."
-            } else if told.findings.first().is_some_and(FindingReport::is_doubtful) {
+            if told.findings.first().is_some_and(FindingReport::is_doubtful) {
                 "Something is missing, and these recordings cannot tell which of several causes it is."
-            } else {
+            } else if told.findings.iter().any(FindingReport::is_doubtful) {
                 "Something is missing, and of a part of it these recordings cannot tell which of several causes it is."
+            } else if told.fit.grows() {
+                "Something is missing, and what explains it in the runs that were fitted does not in those held out, so \
+                 that nothing of it is certain."
+            } else {
+                "More is missing than was found, and what was found may stand in for it, so that nothing of it is certain."
             }
             .to_owned(),
         ),
@@ -89,9 +92,6 @@ pub fn inconclusive(statements: &[String]) -> String {
 fn runs(count: usize) -> String {
     if count == 1 { "1 run".to_owned() } else { format!("{count} runs") }
 }
-
-/// An error that grows by more than this has grown.
-const WORSE: f64 = 1.02;
 
 fn looked_at(told: &Told) -> String {
     let mut names: Vec<String> = told.balances.iter().map(|balance| balance.name().to_owned()).collect();
@@ -150,7 +150,7 @@ fn proof(told: &Told) -> String {
         }
         if after < 0.98 * before {
             format!("{place} the error of {signal} falls from {} to {}", quantity(before), quantity(after))
-        } else if after > WORSE * before {
+        } else if runs.grows() {
             format!("{place} the error of {signal} rises from {} to {}", quantity(before), quantity(after))
         } else {
             format!("{place} the error of {signal} stays at {}", quantity(after))
@@ -167,8 +167,7 @@ fn proof(told: &Told) -> String {
         Some(held) => one(format!("On the {} that it never saw", runs(held.runs.len())), held),
         None => one("On the fitted runs".to_owned(), &fit.fitted),
     };
-    let worse = |runs: &FitRuns| runs.rmse_after > WORSE * runs.rmse_before;
-    let doubt = if !told.findings.is_empty() && fit.held_out.as_ref().is_some_and(worse) {
+    let doubt = if !told.findings.is_empty() && fit.grows() {
         ": it does not help there, so it is no proof"
     } else {
         ""

@@ -53,6 +53,7 @@ pub struct Plant {
 }
 
 /// Hat-weighted means over two blocks, and a correlation between neighbours that is taken out.
+#[derive(Clone)]
 pub struct Weak {
     sd_n: f64,
 }
@@ -84,6 +85,20 @@ impl Weak {
 impl Rows for Weak {
     fn rows(&self, _: usize, samples: &[f64]) -> Vec<f64> {
         self.whiten(&Self::means(samples))
+    }
+}
+
+/// The same rows of every second sample, each standing for two.
+pub struct Sparse(pub Weak);
+
+impl Rows for Sparse {
+    fn rows(&self, run: usize, samples: &[f64]) -> Vec<f64> {
+        let twice: Vec<f64> = samples.iter().flat_map(|value| [*value; 2]).collect();
+        self.0.rows(run, &twice)
+    }
+
+    fn every(&self, _: usize) -> usize {
+        2
     }
 }
 

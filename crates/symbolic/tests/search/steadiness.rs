@@ -1,8 +1,8 @@
 //! The same question has the same answer, to the bit.
 
-use crate::plant::{At, Plant};
+use crate::plant::{At, Plant, Sparse};
 use crate::recovery::options;
-use headland_symbolic::{Found, Options, find};
+use headland_symbolic::{Found, Options, Problem, find};
 
 fn law(at: &At) -> f64 {
     400.0 * (-((at.v - 5.0) / 1.1_f64).powi(2)).exp()
@@ -47,4 +47,20 @@ fn another_seed_draws_another_chance_and_finds_the_same_law() {
     let (one, two) = (with(1), with(2));
     assert_ne!(one.chance.draws, two.chance.draws);
     assert_eq!(one.law().unwrap().text, two.law().unwrap().text);
+}
+
+/// What is averaged over many samples is found by half of them, and told at all of them.
+#[test]
+fn every_second_sample_is_enough_for_the_same_law() {
+    let made = Plant::new(24, 6, 120.0).problem(24, law);
+    let sparse = Sparse(made.weak.clone());
+    let all = find(&made.problem(), &options(), &|| false).unwrap();
+    let half = find(&Problem { rows: &sparse, ..made.problem() }, &options(), &|| false).unwrap();
+    let (all, half) = (all.law().unwrap(), half.law().unwrap());
+    assert_eq!(all.text, half.text);
+    assert_eq!(half.prediction[0].len(), made.variables[0].runs[0].len());
+    for (one, other) in all.constants.iter().zip(&half.constants) {
+        let sd = one.sd.unwrap_or(0.0);
+        assert!((one.value - other.value).abs() <= 0.3 * sd, "{one:?} against {other:?}");
+    }
 }

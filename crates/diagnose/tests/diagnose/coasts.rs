@@ -1,0 +1,72 @@
+//! Coast-downs of which nothing but the speed was recorded.
+
+use super::setting::{found_of_scenario, named, recording_of_scenario};
+use headland_calibrate::statistics::Draws;
+use headland_diagnose::{DiagnoseError, Diagnosed, Options, Verdict};
+
+/// Ten coast-downs to and fro, from two speeds; `more` are further fields.
+fn scenario(effects: &str, more: &str) -> String {
+    let run = |run: usize| {
+        let (heading_deg, speed_km_h) = (180 * (run % 2), if run % 4 < 2 { 30 } else { 15 });
+        format!(
+            "(id: \"c{run}\", with: {{\"ground.terrain.heading_rad\": \"{heading_deg} deg\", \
+             \"start.speed_m_s\": \"{speed_km_h} km/h\"}}), "
+        )
+    };
+    let runs: String = (0..10).map(run).collect();
+    format!(
+        r#"(
+    about: "a tractor that rolls free",
+    vehicle: (mass_kg: 13000, rotating_mass_kg: 800, drag_area_m2: 6.9, driveline: Neutral()),
+    ground: (terrain: Flat(heading_rad: 0.0), soil: Constant(coefficient: 0.02)),
+    air: (density_kg_m3: 1.2),
+    start: (position_m: 0, speed_m_s: "30 km/h"),
+    cycle: [Coast(until: SpeedBelow(speed_m_s: 0.6))],
+    effects: [{effects}],
+    free: [
+        (name: "vehicle.drag_area_m2", sd: 0.5, bounds: (2.0, 14.0)),
+        (name: "ground.soil.coefficient", sd: 0.001, bounds: (0.005, 0.1)),
+    ],
+    runs: [{runs}],
+    {more}
+    simulation: (fidelity: Longitudinal, step_s: 0.05),
+)"#
+    )
+}
+
+fn found(hidden: &str, more: &str) -> Result<Diagnosed, DiagnoseError> {
+    let registry = headland_stock::registry();
+    let noisy = |_: &str, value: f64, draws: &mut Draws| value + 0.03 * draws.normal();
+    let recording = recording_of_scenario(&scenario(hidden, ""), &registry, &["speed_m_s"], (41, &noisy));
+    found_of_scenario(&scenario("", more), &recording, &Options::default(), &registry)
+}
+
+fn noted(found: &Diagnosed, what: &str) -> bool {
+    found.diagnosis.notes.iter().any(|note| note.contains(what))
+}
+
+/// A driveline that never drives leaves no doubt that what nobody drove coasts; another one does, until the scenario says so.
+#[test]
+fn the_speed_of_a_vehicle_in_neutral_is_enough() {
+    let inferred = found("speed_threshold(force_n: 900.0, threshold_m_s: 5.0, width_m_s: 0.2)", "").unwrap();
+    assert!(named(&inferred, "speed_threshold"), "{}", inferred.diagnosis.answer);
+    assert!(noted(&inferred, "its driveline never drives"), "{:?}", inferred.diagnosis.notes);
+    let stated = found("", "replay: (drive: Coast),").unwrap();
+    assert_eq!(stated.diagnosis.verdict, Verdict::None, "{}", stated.diagnosis.answer);
+    assert!(noted(&stated, "the scenario says so"), "{:?}", stated.diagnosis.notes);
+    let driven = found("", "replay: (drive: Speed),").unwrap_err().to_string();
+    assert!(driven.contains("no balance can be made"), "{driven}");
+}
+
+/// Rolling in neutral, a drag of the driveline and one of the ground that grow with speed are the same.
+#[test]
+fn a_drag_that_grows_with_speed_is_the_drivelines_or_the_grounds() {
+    let law = "rolling_speed_law(linear: 0.0006, reference_speed_m_s: 0.5)";
+    for hidden in [law, "neutral_drag(force_n: 0.0, viscous_n_s_m: 150.0)"] {
+        let found = found(hidden, "").unwrap();
+        assert_eq!(found.diagnosis.verdict, Verdict::CannotTell, "{}", found.diagnosis.answer);
+        for id in ["neutral_drag", "rolling_speed_law"] {
+            assert!(named(&found, id), "{hidden}: {}", found.diagnosis.answer);
+        }
+    }
+}

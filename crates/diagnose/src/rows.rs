@@ -141,10 +141,11 @@ impl Row {
     /// Hat-weighted mean of every so many samples of the run, from its first on: of those that are given.
     pub fn mean_of_every(&self, every: usize, samples: &[f64]) -> f64 {
         let [from, _, to] = self.samples;
+        let places = (from.div_ceil(every)..to.div_ceil(every)).zip(&samples[from.div_ceil(every)..]);
         let (mut sum, mut weight) = (0.0, 0.0);
-        for place in from.div_ceil(every)..to.div_ceil(every) {
+        for (place, sample) in places {
             let own = self.weights[place * every - from];
-            (sum, weight) = (sum + own * samples[place], weight + own);
+            (sum, weight) = (sum + own * sample, weight + own);
         }
         sum / weight
     }

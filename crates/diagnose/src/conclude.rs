@@ -8,6 +8,7 @@ use crate::noise::Noises;
 use crate::profile::Function;
 use crate::rivals::twin;
 use crate::search::{Accepted, Found, Round};
+use crate::slowed::joined;
 use crate::state::{Part, Stand, State};
 
 /// A cause of a set, and what could stand in its place.
@@ -162,20 +163,22 @@ impl State<'_> {
         sides.sort_by(|one, other| gain(other).total_cmp(&gain(one)));
         let mut accepted = Vec::new();
         let mut effects = Vec::new();
-        let along = self.functions_along(&best);
+        let held = self.held(&best);
+        let along = self.functions_along(&held);
         for side in &sides {
             let part = &side.part;
-            let rows = best.effect(self, part);
+            let rows = held.effect(self, part);
             let place = best.parts.iter().position(|own| own.trial.columns == part.trial.columns);
             // The value that it has everywhere belongs to the function.
-            let even =
-                best.position(part.trial.columns[0]).map_or(0.0, |position| best.estimate.beta[position]);
+            let even = held.value(part.trial.columns[0]);
+            let shares: Vec<f64> = part.beside().iter().map(|column| held.value(*column)).collect();
             let of = |functions: &[Option<Function>]| {
-                place.and_then(|place| functions.get(place)?.clone()).map(|function| function.raised(even))
+                let function = place.and_then(|place| functions.get(place)?.clone());
+                function.map(|function| joined(self.case, function.raised(even), &shares))
             };
-            let function = of(&best.functions);
+            let function = of(&held.functions);
             let mut one = Accepted {
-                balance: self.balance_of(&rows, &best.noises),
+                balance: self.balance_of(&rows, &held.noises),
                 trial: part.trial.clone(),
                 gain: gain(side),
                 by_chance: needed,
@@ -192,9 +195,9 @@ impl State<'_> {
             unproven,
             accepted,
             noises: (first.noises.clone(), best.noises.clone()),
-            used: best.used.clone(),
-            estimate: best.estimate.clone(),
-            left: best.left.clone(),
+            used: held.used,
+            estimate: held.estimate,
+            left: held.left,
             before: first.left.clone(),
             effects,
             stand: best,

@@ -34,7 +34,13 @@ mod tests {
             free: vec![Beside { change: 0.03, sd }],
         };
         let of = |rivals: Vec<Rival>| {
-            let trial = Trial { cause: 0, shape: Vec::new(), columns: Vec::new(), terms: Vec::new() };
+            let trial = Trial {
+                cause: 0,
+                shape: Vec::new(),
+                columns: Vec::new(),
+                terms: Vec::new(),
+                beside: Vec::new(),
+            };
             let accepted = Accepted {
                 trial,
                 gain: 20.0,
@@ -47,7 +53,7 @@ mod tests {
             let cause = spell("grade");
             let cured = Cured { cause, accepted, values: Vec::new(), events: Vec::new(), mirrored: None };
             let name = "coefficient".to_owned();
-            let free = Free { name, prior: 0.05, value: 0.06, ci95: [0.058, 0.062] };
+            let free = Free { name, prior: 0.05, value: 0.06, ci95: [0.058, 0.062], asked: 0.06 };
             let mut refined = Refined { causes: vec![cured], free: vec![free], null_space: Vec::new() };
             widen(&mut refined, &[(0.01, 0.083)], &[0.01]);
             refined.free[0].ci95

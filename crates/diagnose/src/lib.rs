@@ -21,6 +21,7 @@ mod conclude;
 mod contest;
 mod contradiction;
 mod crossval;
+mod engine_off;
 mod error;
 mod events;
 mod exchange;
@@ -30,6 +31,7 @@ mod filled;
 mod foreseen;
 mod formula;
 mod gram;
+mod held;
 mod in_doubt;
 mod jumps;
 mod laid;
@@ -54,6 +56,7 @@ mod said;
 mod search;
 mod sensors;
 mod sharpen;
+mod slowed;
 mod so_far;
 mod sparse;
 mod spells;
@@ -102,8 +105,9 @@ pub fn diagnose(
     progress: &dyn Progress,
 ) -> Result<Diagnosed, DiagnoseError> {
     let mut case = Case::new(scenario, recording, registry, options, progress)?;
-    let (mut faults, sound) = faults::faults(&case.runs, &case.sensors);
+    let (mut faults, mut sound) = faults::faults(&case.runs, &case.sensors);
     faults.retain(|fault| case.wanted(fault.id));
+    engine_off::leave_out(&mut case, &mut sound);
     case.sound.clone_from(&sound);
     let against = contradiction::statements(&case, &sound);
     if !against.is_empty() {

@@ -315,6 +315,27 @@ impl Function {
         self
     }
 
+    /// The function of a group and what was told beside it at some places; a knot takes the mean of what was told about it, or
+    /// what the last one before it took.
+    pub fn add(&mut self, group: usize, told: &[(f64, f64)]) {
+        let own = &self.groups[group];
+        let (mut sums, mut weights) = (vec![0.0; own.count], vec![0.0; own.count]);
+        for (at, value) in told {
+            let (left, share) = knot(own, *at);
+            for (place, weight) in [(left, 1.0 - share), (left + 1, share)] {
+                sums[place] += weight * value;
+                weights[place] += weight;
+            }
+        }
+        let mut last = 0.0;
+        for ((value, sum), weight) in self.values[group].0.iter_mut().zip(sums).zip(weights) {
+            if weight > 0.0 {
+                last = sum / weight;
+            }
+            *value += last;
+        }
+    }
+
     /// Its value somewhere.
     pub fn value(&self, group: usize, at: f64) -> f64 {
         let (left, share) = knot(&self.groups[group], at);

@@ -56,6 +56,8 @@ pub struct Free {
     pub value: f64,
     /// 95 % interval.
     pub ci95: [f64; 2],
+    /// Where the rows alone would have it, where they were not believed.
+    pub asked: f64,
 }
 
 /// Everything that was found, with values.
@@ -80,7 +82,7 @@ impl Refined {
         self.causes.clear();
         for (free, known) in self.free.iter_mut().zip(&case.study.parameters) {
             let half = known.sd.map_or(f64::INFINITY, |sd| HALF_95 * sd);
-            free.value = free.prior;
+            (free.value, free.asked) = (free.prior, free.prior);
             free.ci95 = [(free.prior - half).max(known.bounds.0), (free.prior + half).min(known.bounds.1)];
         }
     }
@@ -174,7 +176,7 @@ pub fn refine(
         }
     } else {
         for (own, estimate) in refined.free.iter_mut().zip(of_free) {
-            own.value = estimate.value;
+            (own.value, own.asked) = (estimate.value, estimate.value);
             own.ci95 = no_wider(widest(estimate.value, estimate.ci95, own.ci95), estimate);
         }
         of_causes.to_vec()
@@ -225,7 +227,9 @@ fn linear(case: &Case, pool: &Pool, found: &Found, beyond: &Beyond) -> Refined {
         // No shape of a cause takes away what was known before.
         let most = one.sd.unwrap_or(f64::INFINITY).max(known);
         let half = HALF_95 * known.hypot(beyond.free[position]).min(most);
-        Free { name: one.name.clone(), prior: one.value, value, ci95: [value - half, value + half] }
+        let asked = one.value + found.stand.estimate.beta[position];
+        let asked = if asked == one.value + found.estimate.beta[position] { value } else { asked };
+        Free { name: one.name.clone(), prior: one.value, value, ci95: [value - half, value + half], asked }
     });
     let mut causes: Vec<Cured> = Vec::new();
     for (accepted, widths) in found.accepted.iter().zip(&beyond.causes) {
@@ -274,7 +278,8 @@ fn spelt(id: &'static str, events: Vec<Event>, balance: usize) -> Cured {
     let whole: f64 = events.iter().map(longest).sum();
     let mean = events.iter().map(|event| event.force_n * longest(event)).sum::<f64>() / whole.max(1e-9);
     let sd = events.iter().map(|event| event.sd_n).fold(0.0, f64::max);
-    let trial = Trial { cause: 0, shape: Vec::new(), columns: Vec::new(), terms: Vec::new() };
+    let trial =
+        Trial { cause: 0, shape: Vec::new(), columns: Vec::new(), terms: Vec::new(), beside: Vec::new() };
     Cured {
         cause: spell(id),
         accepted: Accepted {

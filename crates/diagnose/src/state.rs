@@ -22,6 +22,13 @@ pub struct Part {
     pub spread: Option<Spread>,
 }
 
+impl Part {
+    /// The columns that stand beside it, where it is a function.
+    pub fn beside(&self) -> &[usize] {
+        if self.spread.is_some() { &self.trial.beside } else { &[] }
+    }
+}
+
 /// A set of causes with its estimate.
 #[derive(Clone)]
 pub struct Stand {
@@ -99,9 +106,11 @@ impl<'a> State<'a> {
         self.cause(trial).id
     }
 
-    /// Columns that a set of causes uses. A function brings its signature: the value that it has on average.
+    /// Columns that a set of causes uses. A function brings its signature: the value that it has on average; what stands
+    /// beside functions comes first, so that the columns of the causes are always the last.
     pub fn columns(&self, parts: &[Part]) -> Vec<usize> {
         let mut used: Vec<usize> = (0..self.pool.nuisance).collect();
+        used.extend(parts.iter().flat_map(|part| part.beside().iter().copied()));
         used.extend(parts.iter().flat_map(|part| part.trial.columns.iter().copied()));
         used
     }
@@ -147,7 +156,8 @@ impl<'a> State<'a> {
 
     /// The first part of a set that would have to be what it cannot be.
     pub fn first_beyond(&self, parts: &[Part], beta: &DVector<f64>) -> Option<usize> {
-        let mut position = self.pool.nuisance;
+        let own: usize = parts.iter().map(|part| part.trial.columns.len()).sum();
+        let mut position = beta.len() - own;
         for (place, part) in parts.iter().enumerate() {
             let cause = self.cause(&part.trial);
             for term in &part.trial.terms {
@@ -438,12 +448,17 @@ impl Stand {
         self.used.iter().position(|used| *used == column)
     }
 
+    /// The value of a column in use, 0 where it is not.
+    pub fn value(&self, column: usize) -> f64 {
+        self.position(column).map_or(0.0, |position| self.estimate.beta[position])
+    }
+
     /// What one part does to every row.
     pub fn effect(&self, state: &State, part: &Part) -> Column {
         let mut rows: Column =
             state.system.chunks.iter().map(|chunk| DVector::zeros(chunk.rows.len())).collect();
-        for column in &part.trial.columns {
-            let value = self.position(*column).map_or(0.0, |position| self.estimate.beta[position]);
+        for column in part.trial.columns.iter().chain(part.beside()) {
+            let value = self.value(*column);
             for (row, values) in rows.iter_mut().zip(&state.pool.columns[*column]) {
                 *row += values * value;
             }

@@ -8,6 +8,7 @@ use crate::losses::{slow_powers, small_losses, torque_errors};
 use crate::recorded::Recorded;
 use crate::said::Said;
 use crate::sensors::{fault, small_faults};
+use crate::slowed::with_speed;
 use crate::{Case, DiagnoseError};
 
 /// The regressors.
@@ -47,6 +48,8 @@ pub struct Trial {
     pub columns: Vec<usize>,
     /// Which of the cause's terms each column stands for; the other linear ones are zero.
     pub terms: Vec<usize>,
+    /// Columns that stand beside a function of it: what goes with speed.
+    pub beside: Vec<usize>,
 }
 
 /// A change of a free parameter for its column, as a share of its standard deviation.
@@ -130,7 +133,16 @@ pub fn add_trial(
         };
         found.push(Part { column, scale: part.scale, term });
     }
+    let beside = found.first().map_or_else(Vec::new, |one| with_speed(case, system, cause, &one.column));
+    let trials = pool.trials.len();
     add(system, pool, number, shape, found);
+    if let Some(trial) = pool.trials.get_mut(trials) {
+        trial.beside = (pool.columns.len()..pool.columns.len() + beside.len()).collect();
+        for (column, sd) in beside {
+            pool.columns.push(column);
+            pool.sd.push(sd);
+        }
+    }
     Ok(())
 }
 
@@ -282,8 +294,8 @@ fn add(system: &System, pool: &mut Pool, cause: usize, shape: &[f64], found: Vec
     if columns.len() > 1 {
         for (column, term) in columns.iter().zip(&terms) {
             let (columns, terms) = (vec![*column], vec![*term]);
-            pool.trials.push(Trial { cause, shape: shape.to_vec(), columns, terms });
+            pool.trials.push(Trial { cause, shape: shape.to_vec(), columns, terms, beside: Vec::new() });
         }
     }
-    pool.trials.push(Trial { cause, shape: shape.to_vec(), columns, terms });
+    pool.trials.push(Trial { cause, shape: shape.to_vec(), columns, terms, beside: Vec::new() });
 }

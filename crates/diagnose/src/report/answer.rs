@@ -119,7 +119,7 @@ pub fn inconclusive(
     let free = parameters.iter().map(|one| {
         let sd = one.sd.unwrap_or(f64::INFINITY);
         let ci95 = [one.value - HALF_95 * sd, one.value + HALF_95 * sd];
-        Free { name: one.name.clone(), prior: one.value, value: one.value, ci95 }
+        Free { name: one.name.clone(), prior: one.value, value: one.value, ci95, asked: one.value }
     });
     let refined = Refined { causes: Vec::new(), free: free.collect(), null_space: Vec::new() };
     // A recording that cannot even drive the model is shown as it is.
@@ -168,11 +168,11 @@ fn timed(refined: &Refined) -> bool {
     refined.causes.iter().any(own)
 }
 
-/// The free parameter that ends furthest from what was known of it, and by how many standard deviations.
+/// The free parameter that the rows would have furthest from what was known of it, and by how many standard deviations.
 fn strain<'a>(case: &Case, refined: &'a Refined) -> Option<(&'a Free, f64)> {
     let of = |free: &'a Free| {
         let sd = case.study.parameters.iter().find(|one| one.name == free.name)?.sd?;
-        (sd > 0.0).then(|| (free, (free.value - free.prior).abs() / sd))
+        (sd > 0.0).then(|| (free, (free.asked - free.prior).abs() / sd))
     };
     refined.free.iter().filter_map(of).max_by(|one, other| one.1.total_cmp(&other.1))
 }

@@ -130,6 +130,15 @@ fn strained(told: &Told) -> Option<String> {
     const FAR: f64 = 3.0;
     let (free, strain) = told.strain.filter(|(_, strain)| *strain > FAR)?;
     let unit = unit_of_name(&free.name).map_or_else(String::new, |unit| unit.symbol);
+    if free.asked != free.value {
+        return Some(format!(
+            "The rows alone would have the {} at {}, {strain:.1} standard deviations from what was known of it, so they were \
+             believed less and it is held at {}: something else may be missing.",
+            plain(stem(&free.name)),
+            quantity(free.asked, &unit),
+            quantity(free.value, &unit)
+        ));
+    }
     Some(format!(
         "The {} ends at {}, {strain:.1} standard deviations from what was known of it: it may stand in for something that is \
          missing.",

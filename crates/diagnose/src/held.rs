@@ -7,6 +7,7 @@
 //! The likelihood is raised to the power of 1/d. Then the priors weigh d times what they did beside it, and all is known √d times
 //! worse. Source: Holmes and Walker, *Biometrika* 104 (2017) 497, for a power that a conflict with the prior asks for.
 
+use crate::balance::Kind;
 use crate::gram::Whitened;
 use crate::state::{Chosen, Stand, State};
 use crate::trial::Pool;
@@ -19,7 +20,8 @@ const STEP: f64 = 1.5;
 const MOST: f64 = 1e4;
 
 impl State<'_> {
-    /// A set that holds functions with its free parameters where they can be; as it is where they are.
+    /// A set that holds functions with its free parameters where they can be; as it is where they are, or where a force was
+    /// measured, which tells the functions apart from what is free.
     pub fn held(&self, stand: &Stand) -> Stand {
         let doubt = self.doubt(stand).unwrap_or(1.0);
         if doubt == 1.0 {
@@ -39,7 +41,7 @@ impl State<'_> {
     /// By how much the rows are doubted: 1 where they are believed.
     fn doubt(&self, stand: &Stand) -> Option<f64> {
         let functions = stand.parts.iter().any(|part| part.spread.is_some());
-        if !functions || self.strain(&stand.estimate.beta) <= HELD {
+        if !functions || self.system.has(Kind::Motion) || self.strain(&stand.estimate.beta) <= HELD {
             return Some(1.0);
         }
         let Chosen { used, columns, places, .. } = self.chosen(&stand.parts);

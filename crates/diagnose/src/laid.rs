@@ -2,6 +2,7 @@
 //!
 //! The longest run is the path: each of its points has the distance that it had driven. The others have that of the nearest
 //! point, which is noisy, or what they drove themselves, which drifts; here it is the second, moved by the first averaged.
+//! Where another begins before it or goes on behind it, the path goes on with that one; distances before the begin are below 0.
 
 use crate::DiagnoseError;
 use headland_recording::RecordedRun;
@@ -51,14 +52,25 @@ pub fn lay(runs: &mut [RecordedRun]) -> Result<Vec<String>, DiagnoseError> {
             continue;
         };
         let reversed = |place: usize| runs[own[place]].reversed;
-        let path = Path::new(&tracks[longest], &driven[longest], reversed(longest));
-        let positions: Option<Vec<Vec<f64>>> = (0..own.len())
-            .map(|place| {
+        let mut path = Path::new(&tracks[longest], &driven[longest], reversed(longest));
+        let mut positions: Vec<Option<Vec<f64>>> = vec![None; own.len()];
+        // What reaches no further than where the path is so far may be reached once another was laid.
+        loop {
+            let before = positions.iter().flatten().count();
+            for place in (0..own.len()).filter(|place| positions[*place].is_none()).collect::<Vec<_>>() {
                 let time_s = runs[own[place]].trace.time_s();
-                path.along(time_s, &tracks[place], &driven[place], reversed(place))
-            })
-            .collect();
-        for (run, position) in own.iter().zip(positions.into_iter().flatten()) {
+                let along = path.along(time_s, &tracks[place], &driven[place], reversed(place));
+                if let Some(along) = &along {
+                    path.go_on(&tracks[place], along);
+                }
+                positions[place] = along;
+            }
+            if positions.iter().flatten().count() == before {
+                break;
+            }
+        }
+        let Some(positions) = positions.into_iter().collect::<Option<Vec<Vec<f64>>>>() else { continue };
+        for (run, position) in own.iter().zip(positions) {
             runs[*run].trace.push("position_m", position, Origin::Measured)?;
             laid.push(runs[*run].id.clone());
         }
@@ -120,22 +132,48 @@ impl Path {
         Self { points }
     }
 
-    /// Distance along the path of the nearest point, near the point before where there was one.
+    /// Goes on with a run that lies so far along, where it reaches beyond the ends.
+    fn go_on(&mut self, track: &Track, along: &[f64]) {
+        let (Some((_, first)), Some((_, last))) = (self.points.first().copied(), self.points.last().copied())
+        else {
+            return;
+        };
+        let known = track.iter().zip(along).filter(|(place, _)| place.iter().all(|one| one.is_finite()));
+        let beyond = known.filter(|(_, at)| **at < first - APART_M || **at > last + APART_M);
+        let mut all = self.points.clone();
+        all.extend(beyond.map(|(place, at)| (*place, *at)));
+        all.sort_by(|one, other| one.1.total_cmp(&other.1));
+        let mut before = f64::NEG_INFINITY;
+        all.retain(|(_, at)| {
+            let new = *at >= before + APART_M || (first..=last).contains(at);
+            if new {
+                before = *at;
+            }
+            new
+        });
+        self.points = all;
+    }
+
+    /// Distance along the path of the nearest point, near the point before where there was one; none beyond its ends.
     fn nearest(&self, place: [f64; 2], near: Option<f64>) -> Option<f64> {
         let among = |at: f64| near.is_none_or(|near| (at - near).abs() < NEAR_M);
         let mut best: Option<(f64, f64)> = None;
-        for pair in self.points.windows(2).filter(|pair| among(pair[0].1)) {
+        let mut inside = false;
+        for (number, pair) in self.points.windows(2).enumerate().filter(|(_, pair)| among(pair[0].1)) {
             let ((from, from_m), (to, to_m)) = (pair[0], pair[1]);
             let along = [to[0] - from[0], to[1] - from[1]];
             let square = along[0] * along[0] + along[1] * along[1];
             let product = (place[0] - from[0]) * along[0] + (place[1] - from[1]) * along[1];
-            let share = if square > 0.0 { (product / square).clamp(0.0, 1.0) } else { 0.0 };
+            let whole = if square > 0.0 { product / square } else { 0.0 };
+            let share = whole.clamp(0.0, 1.0);
             let away = (place[0] - from[0] - share * along[0]).hypot(place[1] - from[1] - share * along[1]);
             if away < BESIDE_M && best.is_none_or(|(other, _)| away < other) {
                 best = Some((away, from_m + share * (to_m - from_m)));
+                let (begins, ends) = (number == 0 && whole < 0.0, number + 2 == self.points.len() && whole > 1.0);
+                inside = !(begins || ends);
             }
         }
-        best.map(|(_, at)| at)
+        best.filter(|_| inside).map(|(_, at)| at)
     }
 
     /// Distance along the path of every sample of a run; none where it never was on it.
@@ -221,6 +259,22 @@ mod tests {
         {
             let found_m = position(run, sample);
             assert!((found_m - expected_m).abs() < 2.0, "{run} {sample}: {found_m}");
+        }
+    }
+
+    /// Coast-downs to and fro on one lane share its middle: laid on one of them the others would stand still at its ends.
+    #[test]
+    fn runs_that_reach_beyond_the_longest_lie_beyond_its_ends() {
+        let mut runs =
+            [run("r1", 0.0, false, 1.0), run("r2", 300.0, false, 0.99), run("r3", 1100.0, true, 0.98)];
+        runs.push(run("r4", -200.0, false, 0.99));
+        assert_eq!(lay(&mut runs).unwrap(), ["r1", "r2", "r3", "r4"]);
+        let position = |run: usize, sample: usize| runs[run].trace.get("position_m").unwrap()[sample];
+        for (run, sample, expected_m) in
+            [(1, 10, 310.0), (1, 590, 890.0), (2, 10, 1090.0), (2, 590, 510.0), (3, 10, -190.0), (3, 590, 390.0)]
+        {
+            let found_m = position(run, sample);
+            assert!((found_m - expected_m).abs() < 6.0, "{run} {sample}: {found_m}");
         }
     }
 

@@ -1,7 +1,7 @@
 //! What a sensor's fault does to the rows, and recordings as they would be without it.
 
 use crate::balance::{Kind, change, longest_renewal_s};
-use crate::catalogue::MOST_SCALE;
+use crate::catalogue::{MOST_SCALE, MOST_SPEED_SCALE};
 use crate::gram::Column;
 use crate::recorded::Recorded;
 use crate::said::Said;
@@ -39,7 +39,8 @@ pub fn is_no_fault(case: &Case, id: &str, value: f64) -> bool {
     match id {
         "latency" => value.abs() <= small_latency_s(case),
         "clock_drift" => value.abs() * case.longest_s() <= small_latency_s(case),
-        "speed_scale" | "force_scale" => !(SMALL_SCALE..=MOST_SCALE).contains(&value.abs()),
+        "speed_scale" => !(SMALL_SCALE..=MOST_SPEED_SCALE).contains(&value.abs()),
+        "force_scale" => !(SMALL_SCALE..=MOST_SCALE).contains(&value.abs()),
         _ => false,
     }
 }

@@ -9,7 +9,7 @@ mod term;
 
 pub use cause::{Cause, Class, Form};
 pub use law_text::{CHANNELS, LawText};
-pub use sensors::MOST_SCALE;
+pub use sensors::{MOST_SCALE, MOST_SPEED_SCALE};
 pub use term::Term;
 
 use crate::balance::Kind;

@@ -10,6 +10,9 @@ const MOST_DRIFT: f64 = 0.03;
 
 /// A sensor that is wrong by more than this share has another unit, or is broken.
 pub const MOST_SCALE: f64 = 0.4;
+/// No speed is wrong by a larger share: satellites are right to a hundredth, a wheel's radius is known to 2 to 4 %, and another
+/// size of tyre makes a tenth. What asks for more is another cause, whose law of speed a longer way of measuring would draw too.
+pub const MOST_SPEED_SCALE: f64 = 0.15;
 
 /// Adds the faults that these channels can have.
 pub fn sensors(all: &mut Vec<Cause>, around: &Around) {
@@ -53,7 +56,7 @@ pub fn sensors(all: &mut Vec<Cause>, around: &Around) {
     all.push(artefact(
         "speed_scale",
         &[Kind::Motion, Kind::Slip, Kind::Battery, Kind::Fuel],
-        linear("scale", "1", 0.03).within(-MOST_SCALE, MOST_SCALE),
+        linear("scale", "1", 0.03).within(-MOST_SPEED_SCALE, MOST_SPEED_SCALE),
         "v_measured = (1 + k) v",
         "a speed sensor with a wrong scale",
         "drive a measured mile",

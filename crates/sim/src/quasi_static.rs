@@ -157,7 +157,8 @@ impl Running<'_> {
             return Ok(Met::Not);
         }
         machine.foresee_end(step_s, to_m_s, instant.effective_mass_kg);
-        if ending.left(&machine.at_end(end_s)) <= 0.0 {
+        let end = machine.at_end(end_s);
+        if ending.left(&end).min(self.ground.left_m(&end)) <= 0.0 {
             return Ok(Met::Not);
         }
         // What others may look at is a copy, made where they look: the instant itself is never put together.

@@ -1,6 +1,6 @@
 //! A batch survives whatever ends it: killed, interrupted, a full disk, a folder that is gone.
 
-use super::help::{Place, headland};
+use super::help::{Place, headland, top, word};
 use std::io::Write;
 use std::os::unix::process::CommandExt;
 use std::path::Path;
@@ -426,4 +426,35 @@ fn fuel_that_is_mostly_correction_is_told_as_such() {
         check
     });
     assert_eq!(check.0, Some(1));
+}
+
+/// What a battery loses bears the name of the battery in the ledger. In the picture of flows the two were one, so it ran in a
+/// circle, and no batch with a vehicle that a battery alone drives had a page.
+#[test]
+fn a_batch_with_battery_electric_vehicles_has_its_page() {
+    let place = Place::new();
+    let comparison = top().join("scenarios/comparisons/battery_electric.ron");
+    let mut batch = headland();
+    batch.args(["batch", word(&comparison), "--quiet", "--out", &place.path("tractors")]);
+    let (code, told) = status(batch);
+    assert_eq!(code, Some(0), "{told}");
+    let page = String::from_utf8(bytes(&place, "tractors/report.html")).unwrap();
+    assert!(page.contains("electric: tillage") && page.contains("battery loss"));
+    assert!(!page.contains("is not drawn"));
+    let car = format!(
+        r#"(
+        about: "a car with a battery",
+        variants: [include("{}")],
+        cycles: [(name: "street", cycle: [Reach(speed_m_s: 10, acceleration_m_s2: 1), Hold(for_s: 10)])],
+        ground: (terrain: Flat, soil: Constant(coefficient: 0.01)),
+        air: (density_kg_m3: 1.2),
+        simulation: (fidelity: Longitudinal, step_s: 0.1),
+    )"#,
+        word(&top().join("scenarios/vehicles/bmw_i3.ron"))
+    );
+    place.write("comparison.ron", &car);
+    let (code, told) = status(self::batch(&place, "car", &[]));
+    assert_eq!(code, Some(0), "{told}");
+    let page = String::from_utf8(bytes(&place, "car/report.html")).unwrap();
+    assert!(page.contains("battery loss") && !page.contains("is not drawn"));
 }

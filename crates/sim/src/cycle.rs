@@ -249,7 +249,7 @@ impl<'a> Running<'a> {
         }
     }
 
-    pub(crate) fn within_the_path(&self) -> Result<(), String> {
+    fn within_the_path(&self) -> Result<(), String> {
         match self.extent_m {
             Some((from_m, to_m))
                 if !(from_m - LOCATED_M..=to_m + LOCATED_M).contains(&self.machine.position_m()) =>

@@ -51,7 +51,7 @@ struct Ahead {
 
 /// What became of a step.
 enum Met {
-    /// The motion is not known, or something happens within the step.
+    /// The motion is not known, or something happens within the step, be it that the path ends.
     Not,
     /// The piece of the speed ends, the phase does not.
     PieceEnds,
@@ -171,7 +171,6 @@ impl Running<'_> {
             return Err(reason);
         }
         self.machine.pass(end_s);
-        self.within_the_path()?;
         // A phase that ends here has more to do.
         Ok(if end_s == piece_end_s && end_s < ending.end_s { Met::PieceEnds } else { Met::Stepped })
     }

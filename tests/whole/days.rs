@@ -1,6 +1,7 @@
 //! Days of work: what was gathered is somewhere, what was driven over was worked, and a test bench gives what it asks.
 
 use crate::root;
+use headland_batch::{Comparison, Plan, Row};
 use headland_scenario::Scenario;
 use headland_sim::{End, Outcome, simulate};
 
@@ -86,4 +87,45 @@ fn the_ramped_cycle_goes_straight_from_mode_to_mode() {
 fn the_loader_and_the_trailer_end_empty() {
     assert!(gain(&driven("loader", &[]), "loader_payload_kg").abs() < 1e-6);
     assert!((gain(&driven("transport", &[]), "trailer_payload_kg") + 14_000.0).abs() < 1e-6);
+}
+
+fn row(comparison: &str, cycle: &str) -> Row {
+    let registry = headland_stock::registry();
+    let path = root().join(format!("scenarios/comparisons/{comparison}.ron"));
+    let plan = Plan::new(Comparison::read(&path).unwrap(), &registry, 1).unwrap();
+    let number = (0..plan.total())
+        .find(|number| plan.comparison.cycles[plan.spec(*number).cycle].name == cycle)
+        .unwrap_or_else(|| panic!("no cycle `{cycle}` in {comparison}"));
+    headland_batch::run(&plan, &registry, number).0
+}
+
+/// By hand, with w the weights of ISO 8178-4, T and n those of the modes, and 133.05 N m of friction (1.9e5 Pa · 8.8e-3 m³ / 4π):
+/// Σ w (T + 133.05) ω / (0.448 · 42.78e6 J/kg) = 8.3604 g/s, Σ w T ω = 136.61 kW: 10.033 kg in 20 minutes, 220.3 g/kWh.
+#[test]
+fn the_modes_of_the_brake_weigh_what_their_times_are() {
+    let bench = row("iso_8178", "C1, weighted");
+    let (fuel_kg, work_j) = (bench.value("fuel_kg"), bench.value("engine_work_j"));
+    assert!((fuel_kg / 10.0325 - 1.0).abs() < 2e-4, "{fuel_kg}");
+    assert!((3.6e9 * fuel_kg / work_j / 220.31 - 1.0).abs() < 2e-4, "{}", 3.6e9 * fuel_kg / work_j);
+    let told = std::fs::read_to_string(root().join("docs/working_day.md")).unwrap();
+    assert!(told.contains("10.03 kg") && told.contains("220.3 g/kWh"));
+    let ramped = row("iso_8178", "C1, ramped");
+    let (fuel_kg, work_j) = (ramped.value("fuel_kg"), ramped.value("engine_work_j"));
+    let (kg, g_kwh) = (format!("{fuel_kg:.2} kg"), format!("{:.1} g/kWh", 3.6e9 * fuel_kg / work_j));
+    assert!(told.contains(&kg) && told.contains(&g_kwh), "{kg} {g_kwh}");
+}
+
+/// Runs of a scenario have no table of g/kWh, so its cycles stand in a comparison too, and are the same ones.
+#[test]
+fn the_comparison_after_powermix_drives_what_its_scenario_drives() {
+    let registry = headland_stock::registry();
+    let whole = Scenario::read(&root().join("scenarios/powermix.ron"), &registry).unwrap();
+    assert_eq!(whole.runs.len(), 14);
+    for run in &whole.runs {
+        let scenario = whole.run(run, &registry).unwrap();
+        let outcome =
+            simulate(&scenario.model(&registry).unwrap(), scenario.cycle.as_ref().unwrap()).unwrap();
+        let compared = row("powermix", &run.id).value("energy_from_fuel_j");
+        assert!((compared / outcome.ledger.source_j - 1.0).abs() < 1e-9, "{}: {compared}", run.id);
+    }
 }

@@ -3,7 +3,7 @@
 use crate::{files_below, root};
 use headland_batch::{Comparison, Plan, Status};
 use headland_scenario::{Fidelity, Scenario};
-use headland_sim::End;
+use headland_sim::{Driven, End};
 use std::path::PathBuf;
 
 /// Files at the top of `scenarios/`; those below it are pieces that they include, and descriptions of recordings.
@@ -33,6 +33,8 @@ fn every_scenario_reads_without_a_remark_and_runs_to_its_end() {
             let Some(cycle) = &scenario.cycle else { continue };
             let outcome = scenario.fidelity.simulate(&scenario.model(&registry).unwrap(), cycle).unwrap();
             assert_eq!(outcome.end, End::Finished, "{name}");
+            let short: Vec<String> = outcome.phases.iter().filter_map(Driven::told_short).collect();
+            assert!(short.is_empty(), "{name}: {short:?}");
             let rigid = matches!(scenario.fidelity, Fidelity::RigidBody { .. });
             let open = if rigid { 1e-3 } else { 1e-6 };
             assert!(outcome.ledger.relative_residual() < open, "{name}: {:?}", outcome.ledger);

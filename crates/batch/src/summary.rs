@@ -23,6 +23,10 @@ pub struct Cell {
     pub finished: u64,
     /// Runs that did not.
     pub unfinished: u64,
+    /// Way that all finished runs made [m].
+    pub way_m: f64,
+    /// Way that phases of theirs made less than their speeds ask for [m].
+    pub short_m: f64,
     /// One for each measure, in its unit.
     pub measures: Vec<Statistics>,
     /// Differences to the baseline as a share of it, one for each measure.
@@ -83,6 +87,9 @@ pub struct Summary {
 /// A correction for charge beyond this share of the fuel burnt is told: SAE J1711 and ISO 23274-1 allow 1 %, of drives on a
 /// dynamometer that repeat themselves.
 const MUCH_MADE_UP: f64 = 0.03;
+
+/// Runs that make this share less of their way than their speeds ask for did other work than is written.
+const MUCH_SHORT: f64 = 0.05;
 
 /// Most configurations that a picture holds.
 const MOST_CHOICES: u64 = 4000;
@@ -146,6 +153,8 @@ impl Gathered {
                 ground: index % grounds,
                 finished: 0,
                 unfinished: 0,
+                way_m: 0.0,
+                short_m: 0.0,
                 measures: none.clone(),
                 against: none.clone(),
                 accounts: Vec::new(),
@@ -199,7 +208,10 @@ impl Gathered {
         if self.charges {
             self.cells[index].fuel_over_store.add(row.value("electricity_j"), row.value("fuel_kg"));
         }
-        self.cells[index].finished += 1;
+        let cell = &mut self.cells[index];
+        cell.finished += 1;
+        cell.way_m += row.value("distance_m");
+        cell.short_m += row.value("short_m");
         self.choose(plan, spec, &all);
         if varied.is_none()
             && let Some(base) = comparison.baseline.filter(|base| *base != spec.variant)
@@ -339,6 +351,17 @@ impl Cell {
     /// correction than of the runs.
     pub fn much_made_up(&self) -> Option<f64> {
         Some(self.made_up.mean).filter(|share| share.abs() > MUCH_MADE_UP)
+    }
+
+    /// What its runs made less of their way than their speeds ask for, as a share of that.
+    pub fn short(&self) -> f64 {
+        let asked_m = self.way_m + self.short_m;
+        if asked_m > 0.0 { self.short_m / asked_m } else { 0.0 }
+    }
+
+    /// The same, where it is so much that other work was done than is written.
+    pub fn much_short(&self) -> Option<f64> {
+        Some(self.short()).filter(|share| *share > MUCH_SHORT)
     }
 
     fn take(&mut self, row: &Row, all: &[f64]) {

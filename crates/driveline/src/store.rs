@@ -270,7 +270,7 @@ impl BatteryFile {
             let expected = format!("less than `most_voltage_v`, {}", self.most_voltage_v);
             return Err(refuse("battery.least_voltage_v", self.least_voltage_v, &expected));
         }
-        Ok(Store {
+        let store = Store {
             charges,
             voltages,
             resistance_ohm: self.resistance_ohm,
@@ -281,7 +281,20 @@ impl BatteryFile {
             max_out_a: self.max_discharge_a,
             max_in_a: self.max_charge_a,
             voltage_window: (self.least_voltage_v, self.most_voltage_v),
-        })
+        };
+        // Behind such limits no current flows, at any charge of the window.
+        let (empty_v, full_v) = (store.open_v(window.0), store.open_v(window.1));
+        if self.least_voltage_v >= full_v {
+            let expected =
+                format!("less than {full_v:.1} V, its open circuit at `most_charge`, or it gives nothing");
+            return Err(refuse("battery.least_voltage_v", format!("{} V", self.least_voltage_v), &expected));
+        }
+        if self.most_voltage_v <= empty_v {
+            let expected =
+                format!("more than {empty_v:.1} V, its open circuit at `least_charge`, or it takes nothing");
+            return Err(refuse("battery.most_voltage_v", format!("{} V", self.most_voltage_v), &expected));
+        }
+        Ok(store)
     }
 }
 

@@ -59,6 +59,23 @@ fn a_supercapacitor_holds_half_c_u_squared() {
     assert!((store.draw(power, 0.9, 0.0).charge_per_s + 1.0 / 140.0).abs() < 1e-12);
 }
 
+/// 735 V at the 0.9 that it is charged to; 704 + (0.18 / 0.8) 31 = 710.975 V at 0.28, the least that it is discharged to.
+#[test]
+fn limits_of_voltage_that_let_no_current_flow_are_refused() {
+    let refused =
+        |from: &str, to: &str| battery(&TEXT.replace(from, to)).map(|_| ()).map_err(|told| told.to_string());
+    let told = refused("least_voltage_v: 560", "least_voltage_v: 735").unwrap_err();
+    assert!(told.starts_with("`battery.least_voltage_v` is 735 V, expected less than 735.0 V"), "{told}");
+    assert_eq!(refused("least_voltage_v: 560", "least_voltage_v: 734.9"), Ok(()));
+    let low = |most_v: &str| {
+        let text = TEXT.replace("least_charge: 0.2", "least_charge: 0.28");
+        battery(&text.replace("most_voltage_v: 780", &format!("most_voltage_v: {most_v}"))).map(|_| ())
+    };
+    let told = low("710.9").unwrap_err().to_string();
+    assert!(told.starts_with("`battery.most_voltage_v` is 710.9 V, expected more than 711.0 V"), "{told}");
+    assert_eq!(low("711.1"), Ok(()));
+}
+
 #[test]
 fn what_cannot_be_is_refused_by_its_full_name() {
     let refused = |from: &str, to: &str| battery(&TEXT.replace(from, to)).unwrap_err().to_string();

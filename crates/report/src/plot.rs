@@ -46,6 +46,14 @@ impl Plot {
         self
     }
 
+    /// Whether it can be drawn; a page with one that cannot is not made.
+    ///
+    /// # Errors
+    /// [`ReportError`], as the page would give it.
+    pub fn drawable(&self) -> Result<(), ReportError> {
+        self.draw().map(drop)
+    }
+
     pub(crate) fn draw(&self) -> Result<Drawn, ReportError> {
         match &self.kind {
             Kind::Lines(lines) => lines.draw(&self.title),

@@ -32,6 +32,7 @@ pub(crate) struct Running<'a> {
     pub(crate) quasi_static: bool,
     pub cycle: &'a Cycle,
     extent_m: Option<(f64, f64)>,
+    pub(crate) ground: Ground,
     pub target_m_s: f64,
     /// Whether the driver has engaged the reverse.
     pub backward: bool,
@@ -64,6 +65,7 @@ impl<'a> Running<'a> {
             quasi_static,
             cycle,
             extent_m: model.terrain.extent_m(),
+            ground: Ground::of(model.terrain.extent_m()),
             target_m_s: start.speed_m_s,
             backward: false,
             setting: Setting::default(),
@@ -235,7 +237,8 @@ impl<'a> Running<'a> {
             return Err(format!("the phase has not ended after {} s", self.cycle.longest_s));
         }
         let step_s = sliver(left_s, self.cycle.step_s);
-        machine.step(&instant, step_s, control, |at| ending.left(at));
+        let ground = self.ground;
+        machine.step(&instant, step_s, control, |at| ending.left(at).min(ground.left_m(at)));
         if step_s == left_s && machine.time_s < end_s && end_s - machine.time_s < 1e-9 {
             machine.time_s = end_s;
         }
@@ -246,7 +249,7 @@ impl<'a> Running<'a> {
         }
     }
 
-    pub(crate) fn within_the_path(&self) -> Result<(), String> {
+    fn within_the_path(&self) -> Result<(), String> {
         match self.extent_m {
             Some((from_m, to_m))
                 if !(from_m - LOCATED_M..=to_m + LOCATED_M).contains(&self.machine.position_m()) =>
@@ -289,6 +292,27 @@ pub(crate) const ON_TIME: f64 = 1.0 - 1e-6;
 /// A length as people read it, to the millimetre [m].
 fn in_millimetres(length_m: f64) -> f64 {
     (1e3 * length_m).round() / 1e3
+}
+
+/// Where a step ends though its phase does not: just beyond the path, so that who stands at its very end is on it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ground {
+    from_m: f64,
+    to_m: f64,
+}
+
+impl Ground {
+    fn of(extent_m: Option<(f64, f64)>) -> Self {
+        let (from_m, to_m) = extent_m.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        Self { from_m: from_m - 2.0 * LOCATED_M, to_m: to_m + 2.0 * LOCATED_M }
+    }
+
+    /// What is left to either end [m].
+    #[allow(clippy::inline_always, reason = "it is asked within each step")]
+    #[inline(always)]
+    pub(crate) fn left_m(&self, at: &Moment) -> f64 {
+        (self.to_m - at.position_m).min(at.position_m - self.from_m)
+    }
 }
 
 /// A path that is driven to its very end is left by the rounding of a located end [m].

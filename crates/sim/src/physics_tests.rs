@@ -1,8 +1,8 @@
 //! The simulation against closed forms, limits, conservation and observed order.
 
 use crate::{
-    Cycle, Drive, End, Model, Named, Outcome, Phase, Replay, Resistance, Start, Until, Vehicle, replay,
-    simulate,
+    Cycle, Drive, End, Model, Named, Outcome, Phase, Replay, Resistance, Simulation, Start, Until, Vehicle,
+    replay, simulate,
 };
 use headland_plugin::{
     Action, Air, Contact, Delivery, Demand, Driveline, Effect, MAX_LOSSES, Place, Readings, Situation, Soil,
@@ -260,6 +260,28 @@ fn a_drive_without_enough_force_says_when_where_and_why() {
     let End::Stopped { time_s, reason, .. } = &outcome.end else { panic!("it went on") };
     assert!(*time_s > 1.0 && reason.contains("10.00 m/s") && reason.contains("9500 N"), "{reason}");
     assert!(outcome.trace.len() > 10);
+}
+
+/// Runs went on for up to a step behind the end of their path, over ground that no terrain knows. 8 m/s in steps of 0.3 s pass
+/// 50 m by 0.4 m. Backward it is the beginning of the path.
+#[test]
+fn a_path_ends_within_a_step() {
+    let mut model = tractor(f64::INFINITY, 0.0);
+    model.terrain = Box::new(Incline { sin_slope: 0.0, extent_m: Some((-20.0, 50.0)) });
+    for (speed_m_s, end_m) in [(8.0, 50.0), (-8.0, -20.0)] {
+        for quasi_static in [false, true] {
+            let start = Start { position_m: 0.0, speed_m_s };
+            let phases = vec![Phase::Hold { for_s: 20.0 }];
+            let cycle = Cycle { start, phases, driver_gain_per_s: 1.0, step_s: 0.3, longest_s: 1000.0 };
+            let simulation = Simulation::new(&model, &cycle);
+            let simulation = if quasi_static { simulation.quasi_static(0.0) } else { simulation };
+            let End::Stopped { position_m, reason, .. } = simulation.run().unwrap().end else {
+                panic!("it went on")
+            };
+            assert!((position_m - end_m).abs() < 1e-5, "{position_m}");
+            assert!(reason.contains("the path ends: it runs from -20 m to 50 m"), "{reason}");
+        }
+    }
 }
 
 #[test]

@@ -51,7 +51,7 @@ struct Ahead {
 
 /// What became of a step.
 enum Met {
-    /// The motion is not known, or something happens within the step.
+    /// The motion is not known, or something happens within the step, be it that the path ends.
     Not,
     /// The piece of the speed ends, the phase does not.
     PieceEnds,
@@ -157,7 +157,8 @@ impl Running<'_> {
             return Ok(Met::Not);
         }
         machine.foresee_end(step_s, to_m_s, instant.effective_mass_kg);
-        if ending.left(&machine.at_end(end_s)) <= 0.0 {
+        let end = machine.at_end(end_s);
+        if ending.left(&end).min(self.ground.left_m(&end)) <= 0.0 {
             return Ok(Met::Not);
         }
         // What others may look at is a copy, made where they look: the instant itself is never put together.
@@ -170,7 +171,6 @@ impl Running<'_> {
             return Err(reason);
         }
         self.machine.pass(end_s);
-        self.within_the_path()?;
         // A phase that ends here has more to do.
         Ok(if end_s == piece_end_s && end_s < ending.end_s { Met::PieceEnds } else { Met::Stepped })
     }

@@ -2,7 +2,7 @@
 //!
 //! R = c_r (1 − k) (m₀ + m) g cos θ,  dm/dt = +r_f or −r_e while it stands to be filled or emptied
 //!
-//! Source: definition of the rolling coefficient; the drag equation.
+//! Source: definition of the rolling coefficient; the drag equation; usual values from memory.
 //! Its brakes are those of the vehicle. It comes along whatever the phase is; unhitch it by leaving it out of the cycle.
 
 use crate::carriage::Carriage;
@@ -28,7 +28,7 @@ impl Plugin for Trailer {
         name: "Trailer",
         about: "a trailer with its wheels, its drag and a load that is filled and tipped",
         equation: "R = c_r (1 − k)(m₀ + m) g cos θ; F_air = −½ ρ C_d A |v − w| (v − w)ₓ; dm/dt = r_f, −r_e",
-        source: "definition of the rolling coefficient; the drag equation",
+        source: "definition of the rolling coefficient; the drag equation; usual values from memory",
         validity: "one rolling coefficient on every ground; brakes are those of the vehicle",
         parameters: &[
             parameter(

@@ -36,6 +36,8 @@ struct Configuration {
     unfinished: u64,
     /// What making up for the charge adds to the fuel burnt, as a share of that.
     charge_made_up: Option<f64>,
+    /// Way that was not made in the time that its speeds ask for, as a share of what they ask for.
+    short_share: f64,
     measures: Vec<Measured>,
 }
 
@@ -208,6 +210,7 @@ fn document(plan: &Plan, summary: &Summary) -> Document {
             .cells
             .iter()
             .map(|cell| Configuration {
+                short_share: cell.short(),
                 variant: comparison.variants[cell.variant].name.clone(),
                 cycle: comparison.cycles[cell.cycle].name.clone(),
                 ground: comparison.grounds[cell.ground].name.clone(),
@@ -256,8 +259,9 @@ fn text(done: &Done, output: &Output) -> String {
             }
         }
     }
-    let notes: Vec<String> =
-        summary.cells.iter().filter_map(|cell| page::batch::much_made_up(plan, cell)).collect();
+    let slowed = summary.cells.iter().filter_map(|cell| page::batch::much_short(plan, cell));
+    let made_up = summary.cells.iter().filter_map(|cell| page::batch::much_made_up(plan, cell));
+    let notes: Vec<String> = slowed.chain(made_up).collect();
     for note in notes.iter().take(MOST_NOTES) {
         let _ = writeln!(text, "  note     {note}");
     }

@@ -1,6 +1,6 @@
 //! A batch survives whatever ends it: killed, interrupted, a full disk, a folder that is gone.
 
-use super::help::{Place, headland};
+use super::help::{Place, headland, top, word};
 use std::io::Write;
 use std::os::unix::process::CommandExt;
 use std::path::Path;
@@ -426,4 +426,67 @@ fn fuel_that_is_mostly_correction_is_told_as_such() {
         check
     });
     assert_eq!(check.0, Some(1));
+}
+
+/// What a battery loses bears the name of the battery in the ledger. In the picture of flows the two were one, so it ran in a
+/// circle, and no batch with a vehicle that a battery alone drives had a page.
+#[test]
+fn a_batch_with_battery_electric_vehicles_has_its_page() {
+    let place = Place::new();
+    let comparison = top().join("scenarios/comparisons/battery_electric.ron");
+    let mut batch = headland();
+    batch.args(["batch", word(&comparison), "--quiet", "--out", &place.path("tractors")]);
+    let (code, told) = status(batch);
+    assert_eq!(code, Some(0), "{told}");
+    let page = String::from_utf8(bytes(&place, "tractors/report.html")).unwrap();
+    assert!(page.contains("electric: tillage") && page.contains("battery loss"));
+    assert!(!page.contains("is not drawn"));
+    let car = format!(
+        r#"(
+        about: "a car with a battery",
+        variants: [include("{}")],
+        cycles: [(name: "street", cycle: [Reach(speed_m_s: 10, acceleration_m_s2: 1), Hold(for_s: 10)])],
+        ground: (terrain: Flat, soil: Constant(coefficient: 0.01)),
+        air: (density_kg_m3: 1.2),
+        simulation: (fidelity: Longitudinal, step_s: 0.1),
+    )"#,
+        word(&top().join("scenarios/vehicles/bmw_i3.ron"))
+    );
+    place.write("comparison.ron", &car);
+    let (code, told) = status(self::batch(&place, "car", &[]));
+    assert_eq!(code, Some(0), "{told}");
+    let page = String::from_utf8(bytes(&place, "car/report.html")).unwrap();
+    assert!(page.contains("battery loss") && !page.contains("is not drawn"));
+}
+
+/// A tractor at its limit drives on more slowly; the batch said nothing, though it held other work against the work of others.
+#[test]
+fn a_configuration_that_falls_short_of_its_way_is_told_as_such() {
+    let place = Place::new();
+    let comparison = format!(
+        r#"(
+        about: "a light and a heavy pull",
+        variants: [(name: "tractor", vehicle: include("{}"))],
+        cycles: [
+            (name: "light", tasks: [Drawbar(force_n: "30 kN")]),
+            (name: "heavy", tasks: [Drawbar(force_n: "80 kN")]),
+        ],
+        cycle: [Drive(speed_m_s: "12 km/h", acceleration_m_s2: 0.5, until: Travelled(distance_m: 200))],
+        start: (position_m: 0, speed_m_s: "6 km/h"),
+        ground: (terrain: Flat, soil: Constant(coefficient: 0.05)),
+        air: (density_kg_m3: 1.2),
+        simulation: (fidelity: Longitudinal, step_s: 0.1),
+    )"#,
+        word(&top().join("scenarios/vehicles/xerion_3800.ron"))
+    );
+    place.write("comparison.ron", &comparison);
+    let output = output(batch(&place, "out", &[]));
+    let told = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{told}{}", String::from_utf8_lossy(&output.stderr));
+    assert!(told.contains("note     tractor, heavy") && !told.contains("note     tractor, light"), "{told}");
+    let page = String::from_utf8(bytes(&place, "out/report.html")).unwrap();
+    assert!(page.contains("Speeds that were not reached") && page.contains("tractor, heavy, ground: "));
+    let summary = place.json("out/summary.json");
+    let short = |index: usize| summary["configurations"][index]["short_share"].as_f64().unwrap();
+    assert!(short(0) == 0.0 && short(1) > 0.05, "{summary}");
 }

@@ -5,10 +5,12 @@ use crate::failure::Failure;
 use headland_batch::{Cell, account_column, account_of_column};
 use headland_plugin::Registry;
 use headland_report::build::{Stages, staged_flow};
-use headland_report::{Axis, Bar, Bars, Kind, Plot, Section};
+use headland_report::{Axis, Bar, Bars, Item, Kind, Plot, Section};
 use headland_scenario::Scenario;
 use std::collections::BTreeMap;
 
+/// What begins the name of the account of a store that is drawn on.
+const FROM: &str = "from ";
 /// Accounts that take from shafts and wires.
 const TAKEN: [&str; 3] = ["power take off", "hydraulics", "auxiliary"];
 /// Accounts with a colour of their own; one more stands for the others.
@@ -34,7 +36,7 @@ impl Content<'_> {
             }
             for cell in cells {
                 if drawn < FLOWS {
-                    section = section.with(self.flow(cell, registry)?);
+                    section = section.with(or_why_not(self.flow(cell, registry)?));
                     drawn += 1;
                 }
             }
@@ -70,7 +72,7 @@ impl Content<'_> {
         let mut bars: Vec<Bar> = names
             .iter()
             .map(|name| Bar {
-                name: (*name).to_owned(),
+                name: self.called(name),
                 values: cells.iter().map(|cell| value(cell, name)).collect(),
                 error: None,
             })
@@ -116,15 +118,13 @@ impl Content<'_> {
         let losses: Vec<String> = model.driveline.losses().iter().map(|name| plain(name)).collect();
         let mut stages = Stages::default();
         for (name, energy) in &cell.accounts {
-            let (entry, of) = match name.strip_prefix("from ") {
-                Some(source) => ((source.to_owned(), energy.mean), &mut stages.sources),
-                None if losses.contains(name) => ((name.clone(), energy.mean), &mut stages.losses),
-                None if TAKEN.contains(&name.as_str()) || name == "residual" => {
-                    ((name.clone(), energy.mean), &mut stages.taken)
-                }
-                None => ((name.clone(), energy.mean), &mut stages.wheels),
+            let of = match name.strip_prefix(FROM) {
+                Some(_) => &mut stages.sources,
+                None if losses.contains(name) => &mut stages.losses,
+                None if TAKEN.contains(&name.as_str()) || name == "residual" => &mut stages.taken,
+                None => &mut stages.wheels,
             };
-            of.push(entry);
+            of.push((self.called(name), energy.mean));
         }
         let place = self.place(cell.cycle, cell.ground);
         let mut plot = staged_flow(&format!("{}: {place}", self.variant(cell.variant)), &stages);
@@ -138,17 +138,57 @@ impl Content<'_> {
     fn colours(&self, cell: &Cell) -> BTreeMap<String, usize> {
         let names = self.names();
         let colour = |name: &str| names.iter().position(|other| *other == name).unwrap_or(names.len());
-        let plain = |name: &str| name.strip_prefix("from ").unwrap_or(name).to_owned();
-        cell.accounts.iter().map(|(name, _)| (plain(name), colour(name))).collect()
+        cell.accounts.iter().map(|(name, _)| (self.called(name), colour(name))).collect()
+    }
+
+    /// An account as the page calls it. What a store loses is named as the store in the ledger; in a picture of flows they
+    /// are two, or the flow would come back to where it began.
+    fn called(&self, name: &str) -> String {
+        let mut accounts = self.summary.cells.iter().flat_map(|cell| &cell.accounts);
+        match name.strip_prefix(FROM) {
+            Some(source) => source.to_owned(),
+            None if accounts.any(|(other, _)| other.strip_prefix(FROM) == Some(name)) => {
+                format!("{name} loss")
+            }
+            None => name.to_owned(),
+        }
     }
 }
 
 /// What stands on the other side of the ledger.
 fn apart(name: &str) -> bool {
-    name.starts_with("from ") || name == "residual"
+    name.starts_with(FROM) || name == "residual"
+}
+
+/// A plot, or why it cannot be drawn: one that cannot leaves the rest of the page.
+fn or_why_not(plot: Plot) -> Item {
+    let title = plot.title.clone();
+    match plot.drawable() {
+        Ok(()) => Item::Plot(plot),
+        Err(error) => Item::Words(format!("{title} is not drawn: {error}.")),
+    }
 }
 
 /// Mean energy of an account [J].
 fn account(cell: &Cell, name: &str) -> Option<f64> {
     cell.accounts.iter().find(|(other, _)| other == name).map(|(_, energy)| energy.mean)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use headland_report::{Flow, Report, Sankey};
+
+    /// One account that was named as its source, and the whole page of a batch was lost.
+    #[test]
+    fn a_plot_that_cannot_be_drawn_is_told_and_the_page_is_made() {
+        let flow = |from: &str, to: &str| Flow { from: from.to_owned(), to: to.to_owned(), value: 1.0 };
+        let flows = vec![flow("battery", "driveline"), flow("driveline", "battery")];
+        let plot =
+            Plot::new("electric", Sankey { axis: Axis::new("energy", "J"), flows, ..Sankey::default() });
+        let Item::Words(words) = or_why_not(plot.clone()) else { panic!("it was drawn") };
+        assert!(words.contains("electric is not drawn") && words.contains("run in a circle"), "{words}");
+        let page = Report::new("batch", "").with(Section::new("flows").with(or_why_not(plot)));
+        assert!(page.to_html().is_ok());
+    }
 }

@@ -5,7 +5,7 @@ mod pareto;
 mod sensitivity;
 mod tables;
 
-pub use tables::much_made_up;
+pub use tables::{much_made_up, much_short};
 
 use crate::command::batch::counted;
 use crate::failure::Failure;
@@ -61,6 +61,7 @@ pub fn page(plan: &Plan, summary: &Summary, registry: &Registry) -> Result<Repor
         content.pareto(),
         content.sensitivity(),
         content.charge(),
+        content.slowed(),
         content.troubles(),
     ];
     for section in parts.into_iter().flatten() {

@@ -134,6 +134,18 @@ impl Content<'_> {
         self.summary.cells.iter().filter_map(|cell| much_made_up(self.plan, cell)).collect()
     }
 
+    /// Configurations that were slower than their cycle says.
+    pub(super) fn slowed(&self) -> Option<Section> {
+        let cells = &self.summary.cells;
+        let slowed: Vec<String> = cells.iter().filter_map(|cell| much_short(self.plan, cell)).collect();
+        let words = "A phase that may be slowed down, as by a plough, goes on at the speed that the drive can give. Such runs took \
+                     more time for less power than their cycle asks for.";
+        let section = || {
+            Section::new("Speeds that were not reached").words(words).with(Item::Sentences(slowed.clone()))
+        };
+        (!slowed.is_empty()).then(section)
+    }
+
     /// Runs that did not reach the end of their cycle.
     pub(super) fn troubles(&self) -> Option<Section> {
         let troubles = &self.summary.troubles;
@@ -166,6 +178,20 @@ pub fn much_made_up(plan: &Plan, cell: &headland_batch::Cell) -> Option<String> 
     Some(format!(
         "{}, {}, {}: {:.1} % of the fuel burnt is the correction for charge, so its fuel is not known better than that \
          correction; a longer cycle, or a management that keeps the charge, makes it smaller",
+        comparison.variants[cell.variant].name,
+        comparison.cycles[cell.cycle].name,
+        comparison.grounds[cell.ground].name,
+        100.0 * share
+    ))
+}
+
+/// What is to be said where a configuration made much less of its way than its speeds ask for.
+pub fn much_short(plan: &Plan, cell: &headland_batch::Cell) -> Option<String> {
+    let share = cell.much_short()?;
+    let comparison = &plan.comparison;
+    Some(format!(
+        "{}, {}, {}: {:.1} % of the way that its speeds ask for was not made in their time, so it did not drive what its cycle \
+         says; a lighter load, a lower speed or a stronger drive does",
         comparison.variants[cell.variant].name,
         comparison.cycles[cell.cycle].name,
         comparison.grounds[cell.ground].name,

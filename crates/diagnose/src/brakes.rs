@@ -8,6 +8,7 @@
 
 use crate::Case;
 use crate::events::{BRAKED_M_S2, Event};
+use crate::places::stretch;
 use crate::recorded::{Recorded, SLOWEST_M_S};
 use crate::said::Said;
 use headland_calibrate::statistics::{NORMAL_OF_MEDIAN, median, quantile_of_sorted, sorted};
@@ -27,18 +28,18 @@ const RESISTANCES: f64 = 1.0;
 const IDLE: f64 = 0.25;
 /// A stretch goes on while what is left over is more than this share of its greatest.
 const FADED: f64 = 0.15;
+/// The ground does to every run what it does to one: it holds this share of the others that cross the place back by as much, within
+/// this share of the force. Drivers brake where they brake, and never twice as hard.
+const CROSSED: f64 = 0.75;
+const ALIKE: f64 = 0.35;
+/// So many others have to cross it.
+const FEWEST_OTHERS: usize = 2;
 /// Fewer samples tell nothing of what is usual.
 const FEWEST: usize = 50;
 
 /// Stretches in which somebody braked.
 pub fn brakes(case: &Case, sound: &[Vec<bool>]) -> Vec<Event> {
-    let excess: Vec<Option<Vec<f64>>> = case
-        .runs
-        .iter()
-        .zip(&case.nominal)
-        .zip(sound)
-        .map(|((run, said), sound)| excess_n(run, said, sound))
-        .collect();
+    let excess = excesses_n(case, sound, Rolling::Left);
     let each = |wanted: &dyn Fn(&Recorded, &Said, usize, f64) -> bool| {
         let mut all = Vec::new();
         for ((run, said), excess) in case.runs.iter().zip(&case.nominal).zip(&excess) {
@@ -67,7 +68,49 @@ pub fn brakes(case: &Case, sound: &[Vec<bool>]) -> Vec<Event> {
             .filter(|event| event.force_n > SIGMAS * event.sd_n)
             .collect::<Vec<Event>>()
     };
-    excess.iter().enumerate().flat_map(of_run).collect()
+    let all: Vec<Event> = excess.iter().enumerate().flat_map(of_run).collect();
+    off_the_ground(case, sound, &all)
+}
+
+/// Whether samples at which the vehicle is known to roll freely are looked at.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Rolling {
+    /// They are.
+    Taken,
+    /// They are not: nobody brakes a coast-down.
+    Left,
+}
+
+/// Stretches that are none of the ground.
+pub fn off_the_ground(case: &Case, sound: &[Vec<bool>], events: &[Event]) -> Vec<Event> {
+    let excess = excesses_n(case, sound, Rolling::Taken);
+    events.iter().filter(|event| !is_ground(case, &excess, event)).cloned().collect()
+}
+
+/// What holds every run back beside the model's resistances [N]; none where no force is known.
+fn excesses_n(case: &Case, sound: &[Vec<bool>], rolling: Rolling) -> Vec<Option<Vec<f64>>> {
+    let runs = case.runs.iter().zip(&case.nominal).zip(sound);
+    runs.map(|((run, said), sound)| excess_n(run, said, sound, rolling)).collect()
+}
+
+/// Whether others that come across the place of a stretch are held back there as much.
+fn is_ground(case: &Case, excess: &[Option<Vec<f64>>], event: &Event) -> bool {
+    let own = &case.runs[event.run];
+    let Some((from_m, to_m)) = stretch(own, event.from_s, event.to_s) else { return false };
+    let (mut crossed, mut alike) = (0usize, 0usize);
+    for (other, excess) in case.runs.iter().zip(excess) {
+        if other.number == own.number || other.path != own.path {
+            continue;
+        }
+        let there = other.position_m.iter().zip(excess.iter().flatten());
+        let there = there.filter(|(place, value)| (from_m..=to_m).contains(*place) && value.is_finite());
+        let (sum, count) = there.fold((0.0, 0usize), |(sum, count), (_, value)| (sum + value, count + 1));
+        if count > 0 {
+            crossed += 1;
+            alike += usize::from((sum / count as f64 - event.force_n).abs() < ALIKE * event.force_n);
+        }
+    }
+    crossed >= FEWEST_OTHERS && alike as f64 >= CROSSED * crossed as f64
 }
 
 fn force(run: &Recorded, index: usize) -> f64 {
@@ -75,7 +118,7 @@ fn force(run: &Recorded, index: usize) -> f64 {
 }
 
 /// What holds a run back beside the model's resistances [N], averaged over a short window; NaN where it is not known.
-fn excess_n(run: &Recorded, said: &Said, sound: &[bool]) -> Option<Vec<f64>> {
+fn excess_n(run: &Recorded, said: &Said, sound: &[bool], rolling: Rolling) -> Option<Vec<f64>> {
     run.force_n.as_ref()?;
     let trace = &run.measured.trace;
     let coasting = trace.get("coasting");
@@ -83,7 +126,7 @@ fn excess_n(run: &Recorded, said: &Said, sound: &[bool]) -> Option<Vec<f64>> {
         .map(|index| {
             let known = sound[index]
                 && run.motion.value[index] > SLOWEST_M_S
-                && coasting.is_none_or(|values| values[index] < 0.5);
+                && (rolling == Rolling::Taken || coasting.is_none_or(|values| values[index] < 0.5));
             let left = force(run, index)
                 - said.resistance_n[index]
                 - said.effective_mass_kg[index] * run.motion.slope[index];

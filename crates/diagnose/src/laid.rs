@@ -169,7 +169,8 @@ impl Path {
             let away = (place[0] - from[0] - share * along[0]).hypot(place[1] - from[1] - share * along[1]);
             if away < BESIDE_M && best.is_none_or(|(other, _)| away < other) {
                 best = Some((away, from_m + share * (to_m - from_m)));
-                let (begins, ends) = (number == 0 && whole < 0.0, number + 2 == self.points.len() && whole > 1.0);
+                let (begins, ends) =
+                    (number == 0 && whole < 0.0, number + 2 == self.points.len() && whole > 1.0);
                 inside = !(begins || ends);
             }
         }
@@ -270,9 +271,14 @@ mod tests {
         runs.push(run("r4", -200.0, false, 0.99));
         assert_eq!(lay(&mut runs).unwrap(), ["r1", "r2", "r3", "r4"]);
         let position = |run: usize, sample: usize| runs[run].trace.get("position_m").unwrap()[sample];
-        for (run, sample, expected_m) in
-            [(1, 10, 310.0), (1, 590, 890.0), (2, 10, 1090.0), (2, 590, 510.0), (3, 10, -190.0), (3, 590, 390.0)]
-        {
+        for (run, sample, expected_m) in [
+            (1, 10, 310.0),
+            (1, 590, 890.0),
+            (2, 10, 1090.0),
+            (2, 590, 510.0),
+            (3, 10, -190.0),
+            (3, 590, 390.0),
+        ] {
             let found_m = position(run, sample);
             assert!((found_m - expected_m).abs() < 6.0, "{run} {sample}: {found_m}");
         }

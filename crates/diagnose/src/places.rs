@@ -40,7 +40,7 @@ pub fn of_places(case: &Case, events: &[Event]) -> bool {
 }
 
 /// Where a run was between two times [m].
-fn stretch(run: &Recorded, from_s: f64, to_s: f64) -> Option<(f64, f64)> {
+pub fn stretch(run: &Recorded, from_s: f64, to_s: f64) -> Option<(f64, f64)> {
     let times = run.measured.trace.time_s().iter().zip(&run.position_m);
     range(times.filter(|(time, _)| (from_s..=to_s).contains(*time)).map(|(_, position)| *position))
 }

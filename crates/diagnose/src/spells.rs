@@ -2,6 +2,7 @@
 //! noise is what neighbouring rows show, if they make the recordings more likely than anything that all runs have in common.
 
 use crate::balance::{Kind, System, block_s};
+use crate::brakes::off_the_ground;
 use crate::events::{self, Event, Spot, Stretches};
 use crate::gram::Column;
 use crate::look::{Look, MANY_ROWS};
@@ -17,6 +18,8 @@ pub fn spells(
     sound: &[Vec<bool>],
     braked: &[Event],
 ) -> Result<Vec<Event>, DiagnoseError> {
+    /// Where fewer of them are none of the ground, it is the ground that holds back.
+    const MOST_OFF: f64 = 0.5;
     let mut events = quiet(case, look)?;
     if events.is_empty() {
         events = loud(case, look);
@@ -24,7 +27,8 @@ pub fn spells(
     let named = events::named(&case.runs, &events).into_iter();
     let mut events: Vec<Event> =
         named.filter(|(id, _)| case.wanted(id)).flat_map(|(_, events)| events).collect();
-    if events.is_empty() || of_places(case, &events) {
+    let of_runs = off_the_ground(case, sound, &events).len();
+    if events.is_empty() || MOST_OFF * events.len() as f64 > of_runs as f64 || of_places(case, &events) {
         return Ok(braked.to_vec());
     }
     let usable = outside(case, sound, &events);

@@ -11,6 +11,7 @@ use crate::sensors::corrected;
 use crate::so_far::SoFar;
 use crate::split::{split, traits};
 use crate::standin::prepared;
+use crate::unmoved::{UNTOLD, UNMOVED, is_mass, moved};
 use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
 use headland_calibrate::study::Study;
 use headland_plugin::{Contact, Registry, closest};
@@ -89,6 +90,8 @@ pub(crate) struct Case<'a> {
     pub fit: Vec<bool>,
     /// Whether any balance can use a run. Effects are reconstructed along the others, and nothing is learned from them.
     pub bears: Vec<bool>,
+    /// Whether the speed was held, so that no mass is told.
+    pub unmoved: bool,
     /// Whether the runs that are held out were chosen here.
     pub chosen: bool,
     pub causes: Vec<Cause>,
@@ -136,6 +139,7 @@ impl<'a> Case<'a> {
             sound: Vec::new(),
             fit: Vec::new(),
             bears: Vec::new(),
+            unmoved: false,
             chosen: false,
             causes: Vec::new(),
             kinds: Kind::ORDER.to_vec(),
@@ -149,7 +153,20 @@ impl<'a> Case<'a> {
         if !case.kinds.is_empty() {
             case.study.notes.extend(idle(&case));
         }
+        let moved = moved(&case.runs, &case.fit);
+        if let Some(moved) = moved {
+            for one in case.study.parameters.iter_mut().filter(|one| is_mass(&one.name)) {
+                one.sd = one.sd.map(|sd| UNMOVED * sd);
+            }
+            case.unmoved = true;
+            case.study.notes.push(format!(
+                "The speed was held: what the force changes makes {:.0} % of the acceleration that it would make of the \
+                 scenario's mass. Such runs tell no mass, and it stays as the scenario has it.",
+                100.0 * moved.max(0.0)
+            ));
+        }
         let mut all = causes(&case.around(&model));
+        all.retain(|cause| moved.is_none() || !UNTOLD.contains(&cause.id));
         bound(&mut all, registry);
         all.extend(own(&case)?);
         check_names(&all, registry, options)?;
@@ -255,6 +272,11 @@ impl<'a> Case<'a> {
         names.sort_unstable();
         names.dedup();
         names
+    }
+
+    /// Whether the runs can tell a free parameter.
+    pub fn tells(&self, parameter: &str) -> bool {
+        !(self.unmoved && is_mass(parameter))
     }
 
     /// Whether the user lets a cause be claimed.

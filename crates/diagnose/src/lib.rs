@@ -70,6 +70,7 @@ mod tails;
 mod together;
 mod trial;
 mod unlisted;
+mod unmoved;
 mod voltage;
 mod widths;
 mod withdraw;

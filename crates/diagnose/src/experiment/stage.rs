@@ -94,6 +94,7 @@ impl<'a> Stage<'a> {
             nominal: Vec::new(),
             rows: case.rows,
             so_far: None,
+            unmoved: case.unmoved,
             chosen: false,
             paths: case.paths.clone(),
             causes: case.causes.clone(),

@@ -91,7 +91,7 @@ pub fn report(
         mismatch_left: after.stretches,
         findings,
         fit,
-        calibrated: calibrated(refined),
+        calibrated: calibrated(case, refined),
         null_space,
         experiments: beside.next.experiments.clone(),
         unproven: found.unproven.iter().map(|cause| case.causes[*cause].id.to_owned()).collect(),
@@ -174,7 +174,8 @@ fn strain<'a>(case: &Case, refined: &'a Refined) -> Option<(&'a Free, f64)> {
         let sd = case.study.parameters.iter().find(|one| one.name == free.name)?.sd?;
         (sd > 0.0).then(|| (free, (free.asked - free.prior).abs() / sd))
     };
-    refined.free.iter().filter_map(of).max_by(|one, other| one.1.total_cmp(&other.1))
+    let told = refined.free.iter().filter(|free| case.tells(&free.name));
+    told.filter_map(of).max_by(|one, other| one.1.total_cmp(&other.1))
 }
 
 fn ids(case: &Case, wanted: bool) -> Vec<String> {
@@ -209,7 +210,8 @@ fn fit(case: &Case, system: &System, found: Option<&Found>, proof: &Proof) -> Fi
     }
 }
 
-fn calibrated(refined: &Refined) -> Vec<Calibrated> {
+/// The free parameters that could be told.
+fn calibrated(case: &Case, refined: &Refined) -> Vec<Calibrated> {
     let unit = |name: &str| unit_of_name(name).map_or_else(|| "1".to_owned(), |unit| unit.symbol);
     let one = |free: &Free| Calibrated {
         name: free.name.clone(),
@@ -218,7 +220,7 @@ fn calibrated(refined: &Refined) -> Vec<Calibrated> {
         ci95: free.ci95,
         unit: unit(&free.name),
     };
-    refined.free.iter().map(one).collect()
+    refined.free.iter().filter(|free| case.tells(&free.name)).map(one).collect()
 }
 
 fn remarks(case: &Case, unproven: &[usize]) -> Vec<String> {

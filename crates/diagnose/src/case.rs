@@ -11,7 +11,7 @@ use crate::sensors::corrected;
 use crate::so_far::SoFar;
 use crate::split::{split, traits};
 use crate::standin::prepared;
-use crate::unmoved::{UNTOLD, UNMOVED, is_mass, moved};
+use crate::unmoved::{UNMOVED, UNTOLD, is_mass, moved};
 use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
 use headland_calibrate::study::Study;
 use headland_plugin::{Contact, Registry, closest};

@@ -17,15 +17,8 @@ const MOVES: f64 = 0.3;
 const SIGMAS: f64 = 3.0;
 
 /// Causes that only an acceleration tells, or how it follows a force: whoever holds the speed makes the force follow the speed.
-pub const UNTOLD: [&str; 7] = [
-    "mass",
-    "rotating_inertia",
-    "payload_change",
-    "latency",
-    "clock_drift",
-    "speed_scale",
-    "force_scale",
-];
+pub const UNTOLD: [&str; 7] =
+    ["mass", "rotating_inertia", "payload_change", "latency", "clock_drift", "speed_scale", "force_scale"];
 
 /// Share of what a mass may be wrong by within which it stays then.
 pub const UNMOVED: f64 = 1e-3;

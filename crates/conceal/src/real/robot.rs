@@ -34,7 +34,8 @@ pub fn rows(options: &Options) -> Result<Vec<Row>, ConcealError> {
         let list: Vec<String> = values.iter().map(|value| short(*value)).collect();
         let _ = writeln!(text, "| {surface} | {} | {} |", values.len(), list.join(", "));
     }
-    let soft = said.found_or_first("soft_ground");
+    // A coefficient of each run and softer ground along it are one thing where every run is on ground of its own.
+    let soft = ["soft_ground", "rolling_resistance"].iter().any(|id| said.found_or_first(id));
     row.figures.push(Figure::goal("soil is named", if soft { "yes" } else { "no" }.to_owned(), "yes", soft));
     let share = explained(&groups);
     row.figures

@@ -99,7 +99,7 @@ mod tests {
     fn rolling(changed: impl Fn(usize, f64) -> f64) -> Trace {
         let mut draws = Draws::new(5, 0);
         let mut trace = Trace::new((0..800).map(|index| 0.05 * f64::from(index)).collect()).unwrap();
-        let speed = (0..800).map(|index| (8.0 - 0.0125 * index as f64).max(0.0) + 0.03 * draws.normal());
+        let speed = (0..800).map(|index| (8.0 - 0.0125 * f64::from(index)).max(0.0) + 0.03 * draws.normal());
         let speed = speed.enumerate().map(|(index, speed)| changed(index, speed)).collect();
         trace.push("speed_m_s", speed, Origin::Measured).unwrap();
         trace

@@ -10,8 +10,9 @@ use crate::search::Accepted;
 use crate::sensors::corrected;
 use crate::so_far::SoFar;
 use crate::split::{split, traits};
-use crate::standin::prepared;
+use crate::standin::{Prepared, prepared};
 use crate::unmoved::{UNMOVED, UNTOLD, is_mass, moved};
+use crate::way::Scale;
 use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
 use headland_calibrate::study::Study;
 use headland_plugin::{Contact, Registry, closest};
@@ -72,6 +73,8 @@ pub(crate) struct Case<'a> {
     pub corrections: Vec<Correction>,
     /// Faults that turned out to be none.
     pub no_faults: Vec<&'static str>,
+    /// What the way says of the scale of the speed, which the runs are corrected for where it is wrong.
+    pub scale: Option<Scale>,
     /// The causes that are tried, where it is not all of them.
     pub only: Option<BTreeSet<usize>>,
     /// What is known of the sensors: channel and sensor.
@@ -109,7 +112,7 @@ impl<'a> Case<'a> {
         progress: &'a dyn Progress,
     ) -> Result<Self, DiagnoseError> {
         progress.step("reading");
-        let prepared = prepared(recording)?;
+        let prepared = prepared(recording, wanted(options, SPEED_SCALE))?;
         let recording = &prepared.recording;
         let mut study = Study::of_any(scenario, recording, registry)?;
         let model = scenario.model(registry)?;
@@ -129,7 +132,8 @@ impl<'a> Case<'a> {
             raw: runs.clone(),
             runs,
             corrections: Vec::new(),
-            no_faults: Vec::new(),
+            no_faults: right(&prepared).into_iter().collect(),
+            scale: prepared.scale,
             sensors: recording.runs.iter().flat_map(|run| run.sensors.clone()).collect(),
             only: None,
             paths,
@@ -281,8 +285,12 @@ impl<'a> Case<'a> {
 
     /// Whether the user lets a cause be claimed.
     pub fn wanted(&self, id: &str) -> bool {
-        let Options { without, only, .. } = self.options;
-        !without.iter().any(|one| one == id) && (only.is_empty() || only.iter().any(|one| one == id))
+        wanted(self.options, id)
+    }
+
+    /// The scale of the speed that was taken out of the recordings because the way says that it is wrong.
+    pub fn faulty_scale(&self) -> Option<Scale> {
+        self.scale.filter(|scale| self.wanted(SPEED_SCALE) && scale.is_wrong())
     }
 
     fn around(&self, model: &headland_sim::Model) -> Around {
@@ -360,6 +368,23 @@ impl<'a> Case<'a> {
             })
         })
     }
+}
+
+/// The cause of which the way may know beforehand.
+const SPEED_SCALE: &str = "speed_scale";
+
+/// Whether the user lets a cause be claimed.
+fn wanted(options: &Options, id: &str) -> bool {
+    let Options { without, only, .. } = options;
+    !without.iter().any(|one| one == id) && (only.is_empty() || only.iter().any(|one| one == id))
+}
+
+/// A fault that the way leaves no room for: a scale of the speed that is right, or was corrected. Beside the speed of wheels
+/// `speed_scale` is one of theirs, of which the way says nothing.
+fn right(prepared: &Prepared) -> Option<&'static str> {
+    let known = prepared.scale.is_some_and(|scale| scale.is_right() || scale.is_wrong());
+    let wheels = prepared.recording.runs.iter().any(|run| run.trace.get("wheel_speed_m_s").is_some());
+    (known && !wheels).then_some(SPEED_SCALE)
 }
 
 /// Resistance of the nominal ground over weight at walking speed.

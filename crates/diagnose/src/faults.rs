@@ -2,8 +2,10 @@
 
 use crate::filled::filled;
 use crate::recorded::Recorded;
+use crate::refine::HALF_95;
 use crate::report::Interval;
 use crate::stuck::{LEAP, still, stuck, usual_step};
+use crate::way::Scale;
 use headland_recording::Sensor;
 
 /// A fault of a channel.
@@ -13,8 +15,12 @@ pub struct Fault {
     pub id: &'static str,
     /// The channel.
     pub channel: String,
-    /// Step of a coarse channel, share of lost time, or seconds that it stuck.
+    /// Step of a coarse channel, share of lost time, seconds that it stuck, or a scale.
     pub size: f64,
+    /// The interval that holds the size with 95 %, where it was estimated.
+    pub ci95: Option<[f64; 2]>,
+    /// Whether values leap away there and back, and are not just missing.
+    pub leaps: bool,
     /// Unit of the size.
     pub unit: String,
     /// Where.
@@ -66,6 +72,7 @@ pub fn faults(drives: &[Recorded], sensors: &[(String, Sensor)]) -> (Vec<Fault>,
     }
     // It stays the same where an engine idles, and ends where it is pushed.
     all.extend(coarse(drives, "fuel_rate_kg_s", sensors));
+    all.extend(leapt(drives));
     all.extend(lost(drives));
     all.extend(filled(drives, &mut usable));
     (all, usable)
@@ -126,6 +133,8 @@ fn coarse(drives: &[Recorded], name: &str, sensors: &[(String, Sensor)]) -> Opti
         id: "quantisation",
         channel: name.to_owned(),
         size: step,
+        ci95: None,
+        leaps: false,
         unit: headland_units::unit_of_name(name).map_or_else(|| "1".to_owned(), |unit| unit.symbol),
         stretches: Vec::new(),
     })
@@ -157,6 +166,12 @@ fn missing(drives: &[Recorded], name: &str) -> Option<Fault> {
             while index < values.len() && !values[index].is_finite() {
                 index += 1;
             }
+            // What leaps is told by itself.
+            if name.contains("speed")
+                && drive.leaps.iter().any(|(first, last)| from <= *last && *first < index)
+            {
+                continue;
+            }
             lost += index - from;
             stretches.push(place(drive, from.saturating_sub(1), index.min(values.len() - 1)));
         }
@@ -166,9 +181,49 @@ fn missing(drives: &[Recorded], name: &str) -> Option<Fault> {
         id: "dropout",
         channel: name.to_owned(),
         size: lost as f64 / count as f64,
+        ci95: None,
+        leaps: false,
         unit: "1".to_owned(),
         stretches,
     })
+}
+
+/// Speeds that leap to where no vehicle can get and back, of which the runs were rid before.
+fn leapt(drives: &[Recorded]) -> Option<Fault> {
+    /// A stray sample among so many is no fault that matters.
+    const MATTERS: f64 = 1e-3;
+    let of_wheels = |drive: &&Recorded| !drive.stands_in.is_empty() && !drive.stands_in.contains(&false);
+    let leaping = || drives.iter().filter(|drive| !drive.leaps.is_empty());
+    let count: usize = drives.iter().map(|drive| drive.measured.trace.len()).sum();
+    let lost: usize = leaping().flat_map(|drive| &drive.leaps).map(|(from, to)| to - from + 1).sum();
+    let place = |drive: &'_ Recorded| -> Vec<Interval> {
+        drive.leaps.iter().map(|(from, to)| place(drive, *from, *to)).collect()
+    };
+    (lost as f64 > MATTERS * count as f64).then(|| Fault {
+        id: "dropout",
+        channel: if leaping().all(|drive| of_wheels(&drive)) { "wheel_speed_m_s" } else { "speed_m_s" }
+            .to_owned(),
+        size: lost as f64 / count as f64,
+        ci95: None,
+        leaps: true,
+        unit: "1".to_owned(),
+        stretches: leaping().flat_map(place).collect(),
+    })
+}
+
+/// A speed whose scale the way says is wrong.
+pub fn scaled(scale: &Scale) -> Fault {
+    let half = HALF_95 * scale.sd;
+    let size = 1.0 + scale.value;
+    Fault {
+        id: "speed_scale",
+        channel: "speed_m_s".to_owned(),
+        size,
+        ci95: Some([size - half, size + half]),
+        leaps: false,
+        unit: "1".to_owned(),
+        stretches: Vec::new(),
+    }
 }
 
 /// Values of a channel that leap to nought now and then and back to where they were: what is lost is written as nought by
@@ -213,6 +268,8 @@ fn nought(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<F
         id: "dropout",
         channel: name.to_owned(),
         size: lost as f64 / count as f64,
+        ci95: None,
+        leaps: true,
         unit: "1".to_owned(),
         stretches,
     })
@@ -238,6 +295,8 @@ fn lost(drives: &[Recorded]) -> Option<Fault> {
         id: "dropout",
         channel: "time_s".to_owned(),
         size: gaps_s / whole_s,
+        ci95: None,
+        leaps: false,
         unit: "1".to_owned(),
         stretches,
     })

@@ -86,6 +86,8 @@ pub fn filled(drives: &[Recorded], usable: &mut [Vec<bool>]) -> Option<Fault> {
         id: "dropout",
         channel: "time_s".to_owned(),
         size: lost_s,
+        ci95: None,
+        leaps: false,
         unit: "s".to_owned(),
         stretches,
     })

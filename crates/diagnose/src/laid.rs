@@ -85,17 +85,17 @@ fn driven(trace: &Trace) -> Vec<f64> {
 }
 
 /// Latitude and longitude of the first place that is known [rad].
-fn first_place(trace: &Trace) -> Option<[f64; 2]> {
+pub fn first_place(trace: &Trace) -> Option<[f64; 2]> {
     let (latitude, longitude) = (trace.get("latitude_deg")?, trace.get("longitude_deg")?);
     let mut places = latitude.iter().zip(longitude);
     let (latitude, longitude) = places.find(|(one, other)| one.is_finite() && other.is_finite())?;
     Some([latitude.to_radians(), longitude.to_radians()])
 }
 
-/// Where a run was, averaged; none where it does not know.
-fn track(trace: &Trace, origin: Option<[f64; 2]>) -> Option<Track> {
-    let (east, north): (Vec<f64>, Vec<f64>) = match (trace.get("east_m"), trace.get("north_m"), origin) {
-        (Some(east), Some(north), _) => (east.to_vec(), north.to_vec()),
+/// East and north of a run [m], as they were recorded; none where it does not know.
+pub fn places(trace: &Trace, origin: Option<[f64; 2]>) -> Option<(Vec<f64>, Vec<f64>)> {
+    match (trace.get("east_m"), trace.get("north_m"), origin) {
+        (Some(east), Some(north), _) => Some((east.to_vec(), north.to_vec())),
         (_, _, Some([latitude_0, longitude_0])) => {
             let (latitude, longitude) = (trace.get("latitude_deg")?, trace.get("longitude_deg")?);
             // Near the origin the earth is flat.
@@ -103,10 +103,15 @@ fn track(trace: &Trace, origin: Option<[f64; 2]>) -> Option<Track> {
                 .iter()
                 .map(|one| EARTH_RADIUS_M * latitude_0.cos() * (one.to_radians() - longitude_0));
             let north = latitude.iter().map(|one| EARTH_RADIUS_M * (one.to_radians() - latitude_0));
-            (east.collect(), north.collect())
+            Some((east.collect(), north.collect()))
         }
-        _ => return None,
-    };
+        _ => None,
+    }
+}
+
+/// Where a run was, averaged; none where it does not know.
+fn track(trace: &Trace, origin: Option<[f64; 2]>) -> Option<Track> {
+    let (east, north) = places(trace, origin)?;
     let averaged = |values: &[f64]| local_fit(trace.time_s(), values, AVERAGED_S).value;
     let track: Track = averaged(&east).into_iter().zip(averaged(&north)).map(|(e, n)| [e, n]).collect();
     track.iter().any(|place| place.iter().all(|one| one.is_finite())).then_some(track)

@@ -35,6 +35,7 @@ mod held;
 mod in_doubt;
 mod jumps;
 mod laid;
+mod leaps;
 mod locate;
 mod look;
 mod losses;
@@ -72,6 +73,7 @@ mod trial;
 mod unlisted;
 mod unmoved;
 mod voltage;
+mod way;
 mod widths;
 mod withdraw;
 mod words;
@@ -107,6 +109,7 @@ pub fn diagnose(
 ) -> Result<Diagnosed, DiagnoseError> {
     let mut case = Case::new(scenario, recording, registry, options, progress)?;
     let (mut faults, mut sound) = faults::faults(&case.runs, &case.sensors);
+    faults.extend(case.faulty_scale().as_ref().map(faults::scaled));
     faults.retain(|fault| case.wanted(fault.id));
     engine_off::leave_out(&mut case, &mut sound);
     case.sound.clone_from(&sound);

@@ -32,6 +32,8 @@ pub struct Recorded {
     pub stands_in: Vec<bool>,
     /// Samples at which it is not known what the run was driven by; empty where there are none.
     pub unknown: Vec<bool>,
+    /// First and last sample of the stretches in which the recorded speed was none that a vehicle can have.
+    pub leaps: Vec<(usize, usize)>,
     /// Power at the crankshaft, recorded torque times recorded speed [W], where no force was made of that torque.
     pub engine_w: Option<Vec<f64>>,
     /// Force at the wheels that this power makes [N], as far as the driveline can tell; NaN where it cannot. It makes wheels
@@ -54,8 +56,9 @@ pub fn recorded(study: &Study, prepared: &Prepared, model: &Model) -> Vec<Record
     let mut paths: Vec<Option<String>> = Vec::new();
     let mut passes: Vec<usize> = Vec::new();
     let mut all = Vec::new();
-    let described = prepared.recording.runs.iter().zip(prepared.stands_in.iter().zip(&prepared.unknown));
-    for (measured, (described, (stands_in, unknown))) in study.runs.iter().zip(described) {
+    let samples = prepared.stands_in.iter().zip(prepared.unknown.iter().zip(&prepared.leaps));
+    let described = prepared.recording.runs.iter().zip(samples);
+    for (measured, (described, (stands_in, (unknown, leaps)))) in study.runs.iter().zip(described) {
         let path = match &described.path {
             Some(path) => paths.iter().position(|known| known.as_ref() == Some(path)),
             None => None,
@@ -77,6 +80,7 @@ pub fn recorded(study: &Study, prepared: &Prepared, model: &Model) -> Vec<Record
             force_n: force(&measured.trace, model, &motion.value),
             stands_in: stands_in.clone(),
             unknown: unknown.clone(),
+            leaps: leaps.clone(),
             pull_n: pull(&measured.trace, model),
             engine_w: engine,
             charge_j: charge(&measured.trace, model),

@@ -258,7 +258,8 @@ fn follow_force(run: &mut Recorded) {
     }
 }
 
-fn with_channel(trace: &Trace, name: &str, values: Vec<f64>) -> Result<Trace, DiagnoseError> {
+/// The trace with other values of a channel.
+pub fn with_channel(trace: &Trace, name: &str, values: Vec<f64>) -> Result<Trace, DiagnoseError> {
     let mut changed = Trace::new(trace.time_s().to_vec())?;
     let mut values = Some(values);
     for Channel { name: own, values: kept, origin } in trace.channels() {

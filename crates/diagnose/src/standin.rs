@@ -1,11 +1,15 @@
 //! Runs that lack a channel: a recording brought to where every run that is left can drive the model.
 //!
 //! A run that does not know its speed over ground is driven by the speed of its wheels, which differs from it by the slip
-//! alone; what compares the two is left out there. A run that knows neither is left out.
+//! alone; what compares the two is left out there. A run that knows neither is left out. Before that a speed loses what no
+//! vehicle can have, and the scale that the way says is wrong.
 
 use crate::DiagnoseError;
 use crate::laid::lay;
-use crate::sparse::{self, Filled, Sparse, filled};
+use crate::leaps::{leaps, without};
+use crate::sensors::with_channel;
+use crate::sparse::{self, Sparse, filled};
+use crate::way::{Scale, scale};
 use headland_calibrate::study::StudyError;
 use headland_recording::{RecordedRun, Recording};
 use headland_trace::{Origin, Trace};
@@ -26,28 +30,47 @@ pub struct Prepared {
     pub stands_in: Vec<Vec<bool>>,
     /// For each of them the samples at which it is not known what it was driven by; empty where there are none.
     pub unknown: Vec<Vec<bool>>,
+    /// For each of them first and last sample of the stretches whose speed no vehicle can have.
+    pub leaps: Vec<Vec<(usize, usize)>>,
+    /// What the way says of the scale of the speed over ground; the runs are corrected where it is wrong.
+    pub scale: Option<Scale>,
     /// What was decided, for people.
     pub notes: Vec<String>,
 }
 
-/// Prepares a recording.
+/// Prepares a recording; a `wrong` scale of speed is taken out of it where the user lets one be claimed.
 ///
 /// # Errors
 /// [`StudyError::NoSpeed`] where no run has a speed of any kind.
-pub fn prepared(recording: &Recording) -> Result<Prepared, DiagnoseError> {
+pub fn prepared(recording: &Recording, wrong: bool) -> Result<Prepared, DiagnoseError> {
     let mut own = Prepared {
         recording: recording.clone(),
         stands_in: Vec::new(),
         unknown: Vec::new(),
+        leaps: Vec::new(),
+        scale: None,
         notes: Vec::new(),
     };
     let (mut whole, mut partly, mut out): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
     own.recording.runs.clear();
     let mut sparse: Vec<Sparse> = Vec::new();
+    let (mut runs, mut unknown): (Vec<RecordedRun>, Vec<Vec<bool>>) = Default::default();
+    let mut leapt: Vec<Vec<(usize, usize)>> = Vec::new();
     for run in &recording.runs {
-        let Filled { trace, sparse: channels, unknown } = filled(&run.trace)?;
-        sparse.extend(channels);
-        let run = &RecordedRun { trace, ..run.clone() };
+        let (trace, own) = settled(&run.trace)?;
+        let made = filled(&trace)?;
+        sparse.extend(made.sparse);
+        unknown.push(made.unknown);
+        leapt.push(own);
+        runs.push(RecordedRun { trace: made.trace, ..run.clone() });
+    }
+    own.scale = scale(&runs);
+    if let Some(scale) = own.scale.filter(|scale| wrong && scale.is_wrong()) {
+        for run in &mut runs {
+            run.trace = with_speed(&run.trace, |speed| speed / (1.0 + scale.value))?;
+        }
+    }
+    for (run, (unknown, leapt)) in runs.iter().zip(unknown.into_iter().zip(leapt)) {
         let Some(stands_in) = standing_in(&run.trace) else {
             out.push(run.id.clone());
             continue;
@@ -62,6 +85,7 @@ pub fn prepared(recording: &Recording) -> Result<Prepared, DiagnoseError> {
         }
         own.recording.runs.push(run);
         own.unknown.push(unknown);
+        own.leaps.push(leapt);
     }
     if own.recording.runs.is_empty() {
         return Err(match recording.runs.first() {
@@ -70,6 +94,18 @@ pub fn prepared(recording: &Recording) -> Result<Prepared, DiagnoseError> {
         });
     }
     own.notes.extend(sparse::told(&sparse));
+    let leapt: Vec<String> = own
+        .recording
+        .runs
+        .iter()
+        .zip(&own.leaps)
+        .filter(|(_, leaps)| !leaps.is_empty())
+        .map(|(run, _)| run.id.clone())
+        .collect();
+    own.notes.extend(told(
+        &leapt,
+        "speed leaps to where no vehicle can get and back; nothing is told by it there",
+    ));
     own.notes.extend(told(
         &lay(&mut own.recording.runs)?,
         "the distance along the path is made of where they were",
@@ -82,6 +118,22 @@ pub fn prepared(recording: &Recording) -> Result<Prepared, DiagnoseError> {
     ));
     own.notes.extend(told(&out, "no speed was recorded, neither over ground nor of the wheels; left out"));
     Ok(own)
+}
+
+/// A run whose speed (that of its wheels where there is no other) has no value where no vehicle can have it, and where that is.
+fn settled(trace: &Trace) -> Result<(Trace, Vec<(usize, usize)>), DiagnoseError> {
+    let name = if trace.get(OVER_GROUND).is_some() { OVER_GROUND } else { OF_WHEELS };
+    let leaps = leaps(trace, name);
+    if leaps.is_empty() {
+        return Ok((trace.clone(), leaps));
+    }
+    Ok((with_channel(trace, name, without(trace, name, &leaps))?, leaps))
+}
+
+/// A run with its speed over ground changed, where it has one.
+fn with_speed(trace: &Trace, change: impl Fn(f64) -> f64) -> Result<Trace, DiagnoseError> {
+    let Some(speed) = trace.get(OVER_GROUND) else { return Ok(trace.clone()) };
+    with_channel(trace, OVER_GROUND, speed.iter().map(|speed| change(*speed)).collect())
 }
 
 /// Samples whose speed over ground is missing where that of the wheels is known; none where nothing can drive the run.

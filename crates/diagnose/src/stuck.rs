@@ -194,6 +194,8 @@ pub fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Optio
         id: "stuck_channel",
         channel: name.to_owned(),
         size: seconds,
+        ci95: None,
+        leaps: false,
         unit: "s".to_owned(),
         stretches,
     })

@@ -16,6 +16,8 @@ mod hurt;
 mod setting;
 #[path = "diagnose/several.rs"]
 mod several;
+#[path = "diagnose/way.rs"]
+mod way;
 
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{Options, Verdict};

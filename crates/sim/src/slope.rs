@@ -9,14 +9,28 @@ pub struct LocalFit {
     pub slope: Vec<f64>,
 }
 
-/// Distance at each sample [m], by the trapezoidal rule; steps of unknown speed count nothing.
+/// Distance at each sample [m], by the trapezoidal rule. Between two speeds that are known a speed that is not lies on the line
+/// from one to the other; before the first and behind the last it counts nothing.
 pub fn travelled(time_s: &[f64], speed_m_s: &[f64]) -> Vec<f64> {
+    let mut positions = vec![0.0; time_s.len().max(1)];
     let mut position = 0.0;
-    let mut positions = vec![0.0];
-    for (times, speeds) in time_s.windows(2).zip(speed_m_s.windows(2)) {
-        let mean = 0.5 * (speeds[0] + speeds[1]);
-        position += if mean.is_finite() { mean * (times[1] - times[0]) } else { 0.0 };
-        positions.push(position);
+    let mut last: Option<usize> = None;
+    let known = time_s.len().min(speed_m_s.len());
+    for index in (0..known).filter(|index| speed_m_s[*index].is_finite()) {
+        if let Some(last) = last {
+            let gap_s = time_s[index] - time_s[last];
+            let slope_m_s2 = (speed_m_s[index] - speed_m_s[last]) / gap_s;
+            for between in last + 1..index {
+                let passed_s = time_s[between] - time_s[last];
+                positions[between] = position + passed_s * (speed_m_s[last] + 0.5 * slope_m_s2 * passed_s);
+            }
+            position += 0.5 * (speed_m_s[last] + speed_m_s[index]) * gap_s;
+            positions[index] = position;
+        }
+        last = Some(index);
+    }
+    if let Some(last) = last {
+        positions[last..].fill(position);
     }
     positions
 }
@@ -104,6 +118,16 @@ mod tests {
         assert!(fit.value[3].is_nan() && fit.slope[3].is_nan());
         assert!(local_fit(&[0.0, 1.0], &[], 5.0).value.iter().all(|value| value.is_nan()));
         assert!(local_fit(&[0.0, 1.0], &[f64::NAN; 2], 5.0).slope.iter().all(|slope| slope.is_nan()));
+    }
+
+    /// From 4 to 2 m/s in 2 s are 6 m, whether the speed between was recorded or not.
+    #[test]
+    fn a_gap_of_the_speed_is_crossed_at_what_lies_between() {
+        let time_s = [0.0, 1.0, 2.0, 3.0, 4.0];
+        assert_eq!(travelled(&time_s, &[4.0, 3.0, 2.0, 2.0, 2.0]), [0.0, 3.5, 6.0, 8.0, 10.0]);
+        assert_eq!(travelled(&time_s, &[4.0, f64::NAN, 2.0, 2.0, f64::NAN]), [0.0, 3.5, 6.0, 8.0, 8.0]);
+        assert_eq!(travelled(&time_s, &[f64::NAN, 3.0, 2.0, f64::NAN, 2.0]), [0.0, 0.0, 2.5, 4.5, 6.5]);
+        assert_eq!(travelled(&time_s, &[f64::NAN; 5]), [0.0; 5]);
     }
 
     #[test]

@@ -132,6 +132,7 @@ pub fn drafted(
         force_n: None,
         stands_in: Vec::new(),
         unknown: Vec::new(),
+        leaps: Vec::new(),
         engine_w,
         pull_n: None,
         charge_j: base.charge_j,

@@ -89,6 +89,7 @@ impl<'a> Stage<'a> {
             runs,
             corrections: case.corrections.clone(),
             no_faults: case.no_faults.clone(),
+            scale: case.scale,
             sensors: case.sensors.clone(),
             only: None,
             nominal: Vec::new(),

@@ -102,9 +102,9 @@ pub fn faulty(fault: &Fault, system: &System) -> FindingReport {
         depends_on: vec![fault.channel.clone()],
         stretches: fault.stretches.clone(),
         parameters: vec![ParameterReport {
-            name: "size".to_owned(),
+            name: if fault.id == "speed_scale" { "scale" } else { "size" }.to_owned(),
             value: fault.size,
-            ci95: [fault.size, fault.size],
+            ci95: fault.ci95.unwrap_or([fault.size, fault.size]),
             unit: fault.unit.clone(),
         }],
         share_of_mismatch: 0.0,

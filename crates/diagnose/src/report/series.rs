@@ -47,7 +47,8 @@ pub fn corrections(case: &Case, refined: &Refined) -> Vec<(String, f64, f64, f64
         "accelerometer_bias" => Some(("specific_force_m_s2".to_owned(), 0.0, 1.0, value)),
         _ => None,
     };
-    refined.artefacts().filter_map(correction).collect()
+    let way = case.faulty_scale().map(|scale| ("speed_scale", scale.value));
+    way.into_iter().chain(refined.artefacts()).filter_map(correction).collect()
 }
 
 /// What every balance leaves over in every run.

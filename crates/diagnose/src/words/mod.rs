@@ -153,6 +153,15 @@ pub fn fault(fault: &crate::faults::Fault) -> String {
                 quantity(fault.size, &fault.unit)
             )
         }
+        "speed_scale" => format!(
+            "{channel} is {} of what the way says that was recorded beside it: a speed sensor with a wrong scale; it was \
+             corrected.",
+            with_interval(fault.size, fault.ci95.unwrap_or([fault.size; 2]), "")
+        ),
+        "dropout" if fault.leaps => format!(
+            "{channel} leaps away and back, as nothing that it measures can, in {:.1} % of its samples; they were left out.",
+            100.0 * fault.size
+        ),
         "dropout" if fault.unit == "s" => format!(
             "All channels run along straight lines for {} in all: a gap of the log that was filled; those samples were left \
              out.",

@@ -6,7 +6,7 @@ use headland_calibrate::statistics::Draws;
 use headland_diagnose::{Diagnosed, Options, Verdict};
 use headland_recording::Recording;
 
-fn ids(found: &Diagnosed) -> Vec<&str> {
+pub fn ids(found: &Diagnosed) -> Vec<&str> {
     found.diagnosis.findings.iter().map(|finding| finding.id.as_str()).collect()
 }
 
@@ -161,6 +161,26 @@ fn a_force_that_falls_to_nought_now_and_then_is_a_dropout_and_no_brake() {
     });
     let found = found(&hurt, &Options::default()).unwrap();
     assert_eq!(ids(&found), ["dropout"], "{}", found.diagnosis.answer);
+}
+
+/// A receiver that says nought for over a second, and now and then for a sample: no brake stops a vehicle from one sample to the
+/// next.
+#[test]
+fn a_speed_that_is_nought_for_a_moment_is_a_dropout_and_no_brake() {
+    let lost = |time_s: f64, index: usize| (8.0..9.2).contains(&time_s) || index % 97 == 60;
+    let hurt = changed(&recorded(0.069, ""), "speed_m_s", |value, trace, index| {
+        if lost(trace.time_s()[index], index) { 0.0 } else { value }
+    });
+    let found = found(&hurt, &Options::default()).unwrap();
+    let said = &found.diagnosis;
+    assert_eq!(ids(&found), ["dropout"], "{}", said.answer);
+    assert_eq!(
+        (said.verdict, said.findings[0].depends_on[0].as_str()),
+        (Verdict::SensorArtefact, "speed_m_s")
+    );
+    // What the receiver lost is neither noise nor an error of the model.
+    let held = said.fit.held_out.as_ref().unwrap();
+    assert!(held.noise < 0.03 && held.rmse_after < 3.0 * held.noise, "{held:?}");
 }
 
 /// Half a second of latency beside a drag: the fault is taken out before the drag is told.

@@ -11,6 +11,10 @@ mod beside;
 mod channels;
 #[path = "diagnose/coasts.rs"]
 mod coasts;
+#[path = "diagnose/engine.rs"]
+mod engine;
+#[path = "diagnose/ground.rs"]
+mod ground;
 #[path = "diagnose/hurt.rs"]
 mod hurt;
 mod setting;

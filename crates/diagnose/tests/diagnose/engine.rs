@@ -1,0 +1,56 @@
+//! What an engine does that is no physics.
+
+use super::setting::{found_of_scenario, recording_of_scenario};
+use headland_calibrate::statistics::Draws;
+use headland_diagnose::{Options, Verdict};
+
+const SCENARIO: &str = r#"(
+    about: "a tractor that stands between two fields",
+    vehicle: (
+        mass_kg: 13000, rotating_mass_kg: 0, drag_area_m2: 6.0,
+        driveline: EngineCvt(
+            displacement_m3: 8.8e-3, willans_efficiency: 0.448, willans_friction_pa: "1.9 bar",
+            lower_heating_value_j_kg: 42.78e6,
+            full_load: [(speed_rad_s: "800 rpm", torque_n_m: 900), (speed_rad_s: "2100 rpm", torque_n_m: 1110)],
+            idle_speed_rad_s: "800 rpm", load_share: 0.9, transmission_efficiency: 0.85, max_force_n: "120 kN",
+            accessory_power_w: "9 kW", alternator_efficiency: 0.6, wheel_radius_m: 0.93, rotating_mass_kg: 0,
+        ),
+    ),
+    ground: (terrain: Flat(heading_rad: 0.0), soil: Constant(coefficient: 0.05)),
+    air: (density_kg_m3: 1.2),
+    cycle: [
+        Reach(speed_m_s: 6, acceleration_m_s2: 0.4), Hold(for_s: 20), Reach(speed_m_s: 0, acceleration_m_s2: 0.4),
+        Stand(until: Elapsed(for_s: 60)),
+        Reach(speed_m_s: 4, acceleration_m_s2: 0.3), Hold(for_s: 20), Reach(speed_m_s: 0, acceleration_m_s2: 0.4),
+    ],
+    free: [
+        (name: "ground.soil.coefficient", sd: 0.005, bounds: (0.01, 0.3)),
+        (name: "vehicle.driveline.accessory_power_w", sd: 2000, bounds: (0, 40000)),
+    ],
+    runs: [(id: "f0", with: {}), (id: "f1", with: {}), (id: "f2", with: {}), (id: "f3", with: {}), (id: "f4", with: {})],
+    replay: (drive: Speed, least_acceleration_m_s2: -0.2),
+    simulation: (fidelity: Longitudinal, step_s: 0.1),
+)"#;
+
+/// An engine that is off takes nothing where the model's idles: that is what was done, and no missing consumer.
+#[test]
+fn an_engine_that_was_switched_off_is_no_mismatch() {
+    /// What this engine takes at idle, and a little [kg/s].
+    const IDLE_KG_S: f64 = 1.05e-3;
+    let registry = headland_stock::registry();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.01 * draws.normal(),
+        _ if value < IDLE_KG_S => 0.0,
+        _ => value * (1.0 + 0.01 * draws.normal()),
+    };
+    let channels = ["speed_m_s", "fuel_rate_kg_s"];
+    let recording = recording_of_scenario(SCENARIO, &registry, &channels, (37, &noisy));
+    let found = found_of_scenario(SCENARIO, &recording, &Options::default(), &registry).unwrap();
+    let diagnosis = &found.diagnosis;
+    assert!(
+        diagnosis.notes.iter().any(|note| note.contains("an engine that is off")),
+        "{:?}",
+        diagnosis.notes
+    );
+    assert_eq!(diagnosis.verdict, Verdict::None, "{}", diagnosis.answer);
+}

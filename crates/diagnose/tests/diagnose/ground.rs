@@ -1,0 +1,99 @@
+//! What is of the ground, and what only looks like it or is taken for something else.
+
+use super::setting::{found_of_scenario, named, recording_of_scenario};
+use headland_calibrate::statistics::Draws;
+use headland_diagnose::{Diagnosed, Options};
+
+/// A tractor in neutral on one lane, from eight speeds, with `effects`.
+fn coasts(effects: &str) -> String {
+    let run = |run: u32| {
+        let speed_m_s = 9.0 - 0.4 * f64::from(run);
+        format!("(id: \"c{run}\", with: {{\"start.speed_m_s\": {speed_m_s:?}}}), ")
+    };
+    let runs: String = (0..8).map(run).collect();
+    format!(
+        r#"(
+    about: "a tractor that rolls free",
+    vehicle: (mass_kg: 13000, rotating_mass_kg: 0, drag_area_m2: 6.0, driveline: Neutral()),
+    ground: (terrain: Flat(heading_rad: 0.0), soil: Constant(coefficient: 0.025)),
+    air: (density_kg_m3: 1.2),
+    start: (position_m: 0, speed_m_s: 9.0),
+    cycle: [Coast(until: SpeedBelow(speed_m_s: 0.6))],
+    effects: [{effects}],
+    free: [
+        (name: "ground.soil.coefficient", sd: 0.003, bounds: (0.002, 0.3)),
+        (name: "vehicle.mass_kg", sd: 65, bounds: (10000, 16000)),
+    ],
+    runs: [{runs}],
+    simulation: (fidelity: Longitudinal, step_s: 0.05),
+)"#
+    )
+}
+
+fn found(hidden: &str) -> Diagnosed {
+    let registry = headland_stock::registry();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| {
+        if name == "speed_m_s" { value + 0.03 * draws.normal() } else { value }
+    };
+    let channels = ["speed_m_s", "position_m"];
+    let recording = recording_of_scenario(&coasts(hidden), &registry, &channels, (29, &noisy));
+    found_of_scenario(&coasts(""), &recording, &Options::default(), &registry).unwrap()
+}
+
+/// Every run is held back alike where the ground is soft; drivers brake where they brake.
+#[test]
+fn a_patch_that_doubles_the_resistance_is_no_brake() {
+    let found = found("soft_ground(positions_m: [40, 70], coefficients: [0.035])");
+    assert!(named(&found, "soft_ground"), "{}", found.diagnosis.answer);
+    assert!(!named(&found, "braking"), "{}", found.diagnosis.answer);
+}
+
+/// What the speed is held by follows the ground, and moves nothing: a mass would be as large as it may be.
+#[test]
+fn runs_whose_speed_was_held_tell_no_mass() {
+    let text = |effects: &str| {
+        let runs: String = (0..6).map(|run| format!("(id: \"h{run}\", with: {{}}), ")).collect();
+        format!(
+            r#"(
+    about: "a tractor that holds its speed",
+    vehicle: (
+        mass_kg: 13000, rotating_mass_kg: 800, drag_area_m2: 6.0,
+        driveline: ElectricSingleSpeed(
+            open_circuit_voltage_v: 600, resistance_ohm: 0.05, capacity_a_h: 200, initial_state_of_charge: 0.8,
+            max_torque_n_m: 3000, max_regeneration_torque_n_m: 3000, max_power_w: 300000, gear_ratio: 20,
+            wheel_radius_m: 0.9, drive_efficiency: 0.9, standby_power_w: 500, rotating_mass_kg: 0,
+        ),
+    ),
+    ground: (terrain: Flat(heading_rad: 0.0), soil: Constant(coefficient: 0.07)),
+    air: (density_kg_m3: 1.2),
+    start: (position_m: 0, speed_m_s: 3.0),
+    cycle: [Hold(for_s: 60)],
+    effects: [{effects}],
+    free: [
+        (name: "vehicle.mass_kg", sd: 1000, bounds: (8000, 26000)),
+        (name: "ground.soil.coefficient", sd: 0.02, bounds: (0.01, 0.3)),
+    ],
+    runs: [{runs}],
+    simulation: (fidelity: Longitudinal, step_s: 0.05),
+)"#
+        )
+    };
+    let registry = headland_stock::registry();
+    // The force wanders with the ground by a sixth, and the speed stays.
+    let wander = std::cell::Cell::new(0.0);
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "tractive_force_n" => {
+            wander.set(0.98 * wander.get() + 300.0 * draws.normal());
+            value + wander.get()
+        }
+        _ => value,
+    };
+    let channels = ["speed_m_s", "position_m", "tractive_force_n"];
+    let recording = recording_of_scenario(&text(""), &registry, &channels, (31, &noisy));
+    let found = found_of_scenario(&text(""), &recording, &Options::default(), &registry).unwrap();
+    let notes = &found.diagnosis.notes;
+    assert!(notes.iter().any(|note| note.contains("The speed was held")), "{notes:?}");
+    assert!(found.diagnosis.calibrated.iter().all(|one| one.name != "mass_kg"));
+    assert!(!named(&found, "mass") && !named(&found, "latency"), "{}", found.diagnosis.answer);
+}

@@ -33,6 +33,7 @@ mod formula;
 mod gram;
 mod held;
 mod in_doubt;
+mod in_neutral;
 mod jumps;
 mod laid;
 mod locate;

@@ -21,6 +21,7 @@ mod conclude;
 mod contest;
 mod contradiction;
 mod crossval;
+mod curved;
 mod engine_off;
 mod error;
 mod events;

@@ -4,6 +4,7 @@
 //! alone; what compares the two is left out there. A run that knows neither is left out.
 
 use crate::DiagnoseError;
+use crate::curved::{self, with_curvature};
 use crate::laid::lay;
 use crate::sparse::{self, Filled, Sparse, filled};
 use headland_calibrate::study::StudyError;
@@ -26,20 +27,25 @@ pub struct Prepared {
     pub stands_in: Vec<Vec<bool>>,
     /// For each of them the samples at which it is not known what it was driven by; empty where there are none.
     pub unknown: Vec<Vec<bool>>,
+    /// Whether curvature was made of the turns that the runs show.
+    pub curved: bool,
     /// What was decided, for people.
     pub notes: Vec<String>,
 }
 
-/// Prepares a recording.
+/// Prepares a recording; where the scenario's path is `straight`, with the curvature that its runs show.
 ///
 /// # Errors
 /// [`StudyError::NoSpeed`] where no run has a speed of any kind.
-pub fn prepared(recording: &Recording) -> Result<Prepared, DiagnoseError> {
+pub fn prepared(recording: &Recording, straight: bool) -> Result<Prepared, DiagnoseError> {
+    let (recording, curved) =
+        if straight { with_curvature(recording)? } else { (recording.clone(), Vec::new()) };
     let mut own = Prepared {
         recording: recording.clone(),
         stands_in: Vec::new(),
         unknown: Vec::new(),
-        notes: Vec::new(),
+        curved: !curved.is_empty(),
+        notes: curved::told(&curved),
     };
     let (mut whole, mut partly, mut out): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
     own.recording.runs.clear();

@@ -77,13 +77,29 @@ impl State<'_> {
             self.pool.trials.iter().filter(able).collect()
         };
         if !own.iter().any(|part| self.id(&part.trial) == NEUTRAL) {
-            return of(NEUTRAL).into_iter().filter(|trial| trial.terms.len() > 1).map(|one| vec![one]).collect();
+            return of(NEUTRAL)
+                .into_iter()
+                .filter(|trial| trial.terms.len() > 1)
+                .map(|one| vec![one])
+                .collect();
         }
         let (levels, growing) = (LEVELS.map(of), of(GROWING));
         let levels = || levels.iter().flat_map(|trials| trials.iter().copied());
-        let single = levels().chain(growing.iter().copied()).map(|one| vec![one]);
-        let pairs = levels().flat_map(|level| growing.iter().map(move |law| vec![level, *law]));
-        single.chain(pairs).collect()
+        // A force alone is a level, and what grows with speed alone needs one only to begin at nought.
+        let has = |name: &str| {
+            let of = |part: &&Part| self.id(&part.trial) == NEUTRAL;
+            let mut terms = own.iter().filter(of).flat_map(|part| {
+                part.trial.terms.iter().map(|term| self.cause(&part.trial).terms[*term].name)
+            });
+            terms.any(|own| own == name)
+        };
+        match (has("force_n"), has("viscous_n_s_m")) {
+            (true, true) => {
+                levels().flat_map(|level| growing.iter().map(move |law| vec![level, *law])).collect()
+            }
+            (true, false) => levels().map(|level| vec![level]).collect(),
+            _ => growing.iter().map(|law| vec![*law]).collect(),
+        }
     }
 }
 

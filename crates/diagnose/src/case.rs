@@ -18,6 +18,7 @@ use headland_calibrate::study::Study;
 use headland_plugin::{Contact, Registry, closest};
 use headland_recording::{Recording, Sensor};
 use headland_scenario::Scenario;
+use headland_sim::Inputs;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -112,10 +113,17 @@ impl<'a> Case<'a> {
         progress: &'a dyn Progress,
     ) -> Result<Self, DiagnoseError> {
         progress.step("reading");
-        let prepared = prepared(recording, wanted(options, SPEED_SCALE))?;
+        let model = scenario.model(registry)?;
+        let prepared = prepared(recording, wanted(options, SPEED_SCALE), is_straight(&model))?;
         let recording = &prepared.recording;
         let mut study = Study::of_any(scenario, recording, registry)?;
-        let model = scenario.model(registry)?;
+        // Nobody could list what was not recorded.
+        for run in study.runs.iter_mut().filter(|run| prepared.curved && Inputs::Curvature.whole(&run.trace))
+        {
+            if !run.how.also.contains(&Inputs::Curvature) {
+                run.how.also.push(Inputs::Curvature);
+            }
+        }
         let runs = recorded(&study, &prepared, &model);
         study.notes.extend(prepared.notes.iter().cloned());
         let marked: Vec<bool> = recording.runs.iter().map(|run| run.held_out).collect();
@@ -385,6 +393,16 @@ fn right(prepared: &Prepared) -> Option<&'static str> {
     let known = prepared.scale.is_some_and(|scale| scale.is_right() || scale.is_wrong());
     let wheels = prepared.recording.runs.iter().any(|run| run.trace.get("wheel_speed_m_s").is_some());
     (known && !wheels).then_some(SPEED_SCALE)
+}
+
+/// Whether the path of a scenario bends nowhere; one that does says itself how.
+fn is_straight(model: &headland_sim::Model) -> bool {
+    /// So far a path without an end is looked along [m], in so many steps.
+    const FAR_M: f64 = 1000.0;
+    const STEPS: u32 = 500;
+    let (from_m, to_m) = model.terrain.extent_m().unwrap_or((0.0, FAR_M));
+    let at = |step: u32| from_m + (to_m - from_m) * f64::from(step) / f64::from(STEPS);
+    (0..=STEPS).all(|step| model.terrain.at(at(step)).curvature_per_m == 0.0)
 }
 
 /// Resistance of the nominal ground over weight at walking speed.

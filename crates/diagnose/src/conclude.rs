@@ -190,6 +190,7 @@ impl State<'_> {
             accepted.push(one);
             effects.push(rows);
         }
+        self.named_in_neutral(&best, &mut accepted);
         Found {
             tried,
             unproven,

@@ -5,6 +5,7 @@
 //! vehicle can have, and the scale that the way says is wrong.
 
 use crate::DiagnoseError;
+use crate::curved::{self, with_curvature};
 use crate::laid::lay;
 use crate::leaps::{leaps, without};
 use crate::sensors::with_channel;
@@ -34,22 +35,28 @@ pub struct Prepared {
     pub leaps: Vec<Vec<(usize, usize)>>,
     /// What the way says of the scale of the speed over ground; the runs are corrected where it is wrong.
     pub scale: Option<Scale>,
+    /// Whether curvature was made of the turns that the runs show.
+    pub curved: bool,
     /// What was decided, for people.
     pub notes: Vec<String>,
 }
 
-/// Prepares a recording; a `wrong` scale of speed is taken out of it where the user lets one be claimed.
+/// Prepares a recording; a `wrong` scale of speed is taken out of it where the user lets one be claimed. Where the scenario's
+/// path is `straight`, it gets the curvature that its runs show.
 ///
 /// # Errors
 /// [`StudyError::NoSpeed`] where no run has a speed of any kind.
-pub fn prepared(recording: &Recording, wrong: bool) -> Result<Prepared, DiagnoseError> {
+pub fn prepared(recording: &Recording, wrong: bool, straight: bool) -> Result<Prepared, DiagnoseError> {
+    let (recording, curved) =
+        if straight { with_curvature(recording)? } else { (recording.clone(), Vec::new()) };
     let mut own = Prepared {
         recording: recording.clone(),
         stands_in: Vec::new(),
         unknown: Vec::new(),
         leaps: Vec::new(),
         scale: None,
-        notes: Vec::new(),
+        curved: !curved.is_empty(),
+        notes: curved::told(&curved),
     };
     let (mut whole, mut partly, mut out): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
     own.recording.runs.clear();

@@ -140,9 +140,9 @@ pub fn verdict(findings: &[FindingReport], fit: &Fit, timed: bool, strain: f64) 
         return if far || strain > STRAINED { Verdict::CannotTell } else { Verdict::None };
     };
     let strained = strain > STRAINED_BESIDE && !any(FindingKind::Artefact);
-    let hurt = fit.grows() && (any(FindingKind::Physics) || any(FindingKind::Unlisted));
-    let doubtful = any(FindingKind::Physics) && far && !timed || strained || hurt;
-    if first.kind == FindingKind::Unlisted && !first.is_doubtful() && !strained && !hurt {
+    let claims = any(FindingKind::Physics) || any(FindingKind::Unlisted);
+    let doubtful = claims && (far && !timed || fit.grows()) || strained;
+    if first.kind == FindingKind::Unlisted && !first.is_doubtful() && !doubtful {
         Verdict::Unlisted
     } else if first.is_doubtful()
         || doubtful
@@ -440,6 +440,9 @@ mod tests {
         assert_eq!(verdict(&sure, 40.0, false), Verdict::CannotTell);
         assert_eq!(verdict(&sure, 40.0, true), Verdict::MissingPhysics);
         assert_eq!(verdict(&fault, 40.0, false), Verdict::SensorArtefact);
+        let law = [finding(FindingKind::Unlisted, "unlisted", None)];
+        assert_eq!(verdict(&law, 3.0, false), Verdict::Unlisted);
+        assert_eq!(verdict(&law, 40.0, false), Verdict::CannotTell);
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! Runs that lack a channel, and balances from channels that are not powers or forces themselves.
 
-use super::setting::{found, named, recording_of};
+use super::setting::{found, found_with, named, recording_of};
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{Diagnosed, Options};
 use headland_recording::{Recording, Sensor};
+use headland_trace::Origin;
 
 /// The five drives with these channels, each sample changed as is said: name, sample, a draw of noise.
 fn recorded(effects: &str, channels: &[&str], sensor: impl Fn(&str, f64, f64) -> f64) -> Recording {
@@ -106,4 +107,65 @@ fn steps_are_a_fault_where_they_hide_the_noise_that_is_known() {
     }
     let told = found(&recording, &Options::default()).unwrap();
     assert!(named(&told, "quantisation"), "{}", told.diagnosis.answer);
+}
+
+/// Each drive bends to one side and back in bows of 40 m, of 1/16 m at most, and its force pays for that.
+fn bending(stiffness_n_per_rad: f64, noise_rad: f64) -> Recording {
+    const MASS_KG: f64 = 13_000.0;
+    const BOW_M: f64 = 40.0;
+    const MOST_PER_M: f64 = 1.0 / 16.0;
+    let mut recording = super::recorded(0.07, "");
+    for (number, run) in recording.runs.iter_mut().enumerate() {
+        let mut draws = Draws::new(31, number as u64);
+        let (speed, position) = (run.trace.get("speed_m_s").unwrap(), run.trace.get("position_m").unwrap());
+        let curvature = |position_m: f64| {
+            let wave = (std::f64::consts::TAU * position_m / BOW_M).sin();
+            MOST_PER_M * wave.signum() * wave.abs().min(0.8)
+        };
+        let mut heading = run.trace.get("heading_rad").unwrap()[0];
+        let mut headings = Vec::new();
+        let mut forces = Vec::new();
+        let force = run.trace.get("tractive_force_n").unwrap();
+        for index in 0..run.trace.len() {
+            let at = curvature(position[index]);
+            if index > 0 {
+                heading += at * (position[index] - position[index - 1]);
+            }
+            headings.push((heading + noise_rad * draws.normal()).rem_euclid(std::f64::consts::TAU));
+            forces.push(force[index] + (MASS_KG * speed[index].powi(2) * at).powi(2) / stiffness_n_per_rad);
+        }
+        for (name, values) in [("heading_rad", headings), ("tractive_force_n", forces)] {
+            run.trace.remove(name);
+            run.trace.push(name, values, Origin::Measured).unwrap();
+        }
+        // What rolls free pays with its speed.
+        run.trace.remove("coasting");
+    }
+    recording
+}
+
+/// Whether or not the scenario lists what it is told: what nobody recorded nobody could list.
+#[test]
+fn drag_in_curves_is_told_by_the_heading_where_no_curvature_was_recorded() {
+    let recording = bending(400_000.0, 0.01);
+    for more in ["", "replay: (inputs: [Heading]),"] {
+        let found = found_with(&recording, &Options::default(), more, &headland_stock::registry()).unwrap();
+        let finding = &found.diagnosis.findings[0];
+        assert_eq!(finding.id, "cornering_drag", "{}", found.diagnosis.answer);
+        assert!((finding.parameters[0].value / 400_000.0 - 1.0).abs() < 0.1, "{:?}", finding.parameters);
+        assert!(noted(&found, "it is made of `heading_rad`"), "{:?}", found.diagnosis.notes);
+    }
+}
+
+#[test]
+fn a_straight_lane_has_no_curvature_however_noisy_its_heading_is() {
+    let noisy = |name: &str, value: f64, noise: f64| match name {
+        "speed_m_s" => value + 0.02 * noise,
+        "heading_rad" => value + 0.05 * noise,
+        _ => value,
+    };
+    let recording = recorded("", &["speed_m_s", "tractive_force_n", "heading_rad"], noisy);
+    let found = found(&recording, &Options::default()).unwrap();
+    assert!(!noted(&found, "curvature_per_m"), "{:?}", found.diagnosis.notes);
+    assert!(!named(&found, "cornering_drag"), "{}", found.diagnosis.answer);
 }

@@ -70,3 +70,18 @@ fn a_drag_that_grows_with_speed_is_the_drivelines_or_the_grounds() {
         }
     }
 }
+
+/// A force and a part that grows with speed are the driveline's, the ground's by its level and its law, or a brake's beside that
+/// law: with one mass, and nothing that drives, they are one sum.
+#[test]
+fn a_level_of_drag_that_grows_with_speed_is_the_drivelines_the_grounds_or_a_brakes() {
+    let ground =
+        "rolling_resistance(coefficient: 0.012), rolling_speed_law(linear: 0.0006, reference_speed_m_s: 0.5)";
+    for hidden in [ground, "neutral_drag(force_n: 1500.0, viscous_n_s_m: 150.0)"] {
+        let found = found(hidden, "").unwrap();
+        assert_eq!(found.diagnosis.verdict, Verdict::CannotTell, "{}", found.diagnosis.answer);
+        for id in ["neutral_drag", "rolling_resistance", "rolling_speed_law", "brake_drag"] {
+            assert!(named(&found, id), "{hidden}, {id}: {}", found.diagnosis.answer);
+        }
+    }
+}

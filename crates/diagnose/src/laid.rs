@@ -271,9 +271,12 @@ mod tests {
     /// Coast-downs to and fro on one lane share its middle: laid on one of them the others would stand still at its ends.
     #[test]
     fn runs_that_reach_beyond_the_longest_lie_beyond_its_ends() {
-        let mut runs =
-            [run("r1", 0.0, false, 1.0), run("r2", 300.0, false, 0.99), run("r3", 1100.0, true, 0.98)];
-        runs.push(run("r4", -200.0, false, 0.99));
+        let mut runs = [
+            run("r1", 0.0, false, 1.0),
+            run("r2", 300.0, false, 0.99),
+            run("r3", 1100.0, true, 0.98),
+            run("r4", -200.0, false, 0.99),
+        ];
         assert_eq!(lay(&mut runs).unwrap(), ["r1", "r2", "r3", "r4"]);
         let position = |run: usize, sample: usize| runs[run].trace.get("position_m").unwrap()[sample];
         for (run, sample, expected_m) in [

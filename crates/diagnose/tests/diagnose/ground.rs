@@ -1,6 +1,6 @@
 //! What is of the ground, and what only looks like it or is taken for something else.
 
-use super::setting::{found_of_scenario, named, recording_of_scenario};
+use super::setting::{ELECTRIC, found_of_scenario, named, recording_of_scenario};
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{Diagnosed, Options};
 
@@ -58,11 +58,7 @@ fn runs_whose_speed_was_held_tell_no_mass() {
     about: "a tractor that holds its speed",
     vehicle: (
         mass_kg: 13000, rotating_mass_kg: 800, drag_area_m2: 6.0,
-        driveline: ElectricSingleSpeed(
-            open_circuit_voltage_v: 600, resistance_ohm: 0.05, capacity_a_h: 200, initial_state_of_charge: 0.8,
-            max_torque_n_m: 3000, max_regeneration_torque_n_m: 3000, max_power_w: 300000, gear_ratio: 20,
-            wheel_radius_m: 0.9, drive_efficiency: 0.9, standby_power_w: 500, rotating_mass_kg: 0,
-        ),
+        driveline: {ELECTRIC},
     ),
     ground: (terrain: Flat(heading_rad: 0.0), soil: Constant(coefficient: 0.07)),
     air: (density_kg_m3: 1.2),

@@ -11,6 +11,13 @@ use headland_sim::simulate;
 use headland_trace::{Origin, Trace};
 use std::path::{Path, PathBuf};
 
+/// An electric drive of a tractor of 13 t.
+pub const ELECTRIC: &str = "ElectricSingleSpeed(
+            open_circuit_voltage_v: 600, resistance_ohm: 0.05, capacity_a_h: 200, initial_state_of_charge: 0.8,
+            max_torque_n_m: 3000, max_regeneration_torque_n_m: 3000, max_power_w: 300000, gear_ratio: 20,
+            wheel_radius_m: 0.9, drive_efficiency: 0.9, standby_power_w: 500, rotating_mass_kg: 0,
+        )";
+
 /// A tractor that drives up, holds, slows down and coasts, to and fro; `more` are further fields.
 pub fn scenario(coefficient: f64, effects: &str, more: &str) -> String {
     let runs: String = ["0 deg", "180 deg", "0 deg", "180 deg", "0 deg"]
@@ -26,11 +33,7 @@ pub fn scenario(coefficient: f64, effects: &str, more: &str) -> String {
     about: "a tractor",
     vehicle: (
         mass_kg: 13000, rotating_mass_kg: 800, drag_area_m2: 6.0,
-        driveline: ElectricSingleSpeed(
-            open_circuit_voltage_v: 600, resistance_ohm: 0.05, capacity_a_h: 200, initial_state_of_charge: 0.8,
-            max_torque_n_m: 3000, max_regeneration_torque_n_m: 3000, max_power_w: 300000, gear_ratio: 20,
-            wheel_radius_m: 0.9, drive_efficiency: 0.9, standby_power_w: 500, rotating_mass_kg: 0,
-        ),
+        driveline: {ELECTRIC},
     ),
     ground: (terrain: Flat(heading_rad: 0.0), soil: LinearSpeedLaw(coefficient: {coefficient:?}, speed_scale_m_s: "100 km/h")),
     air: (density_kg_m3: 1.2),

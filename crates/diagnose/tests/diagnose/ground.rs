@@ -52,7 +52,8 @@ fn a_patch_that_doubles_the_resistance_is_no_brake() {
 #[test]
 fn runs_whose_speed_was_held_tell_no_mass() {
     let text = |effects: &str| {
-        let runs: String = (0..6).map(|run| format!("(id: \"h{run}\", with: {{}}), ")).collect();
+        let run = |run: u32| format!("(id: \"h{run}\", with: {{}}), ");
+        let runs: String = (0..6).map(run).collect();
         format!(
             r#"(
     about: "a tractor that holds its speed",

@@ -15,6 +15,9 @@ const FEWEST: usize = 60;
 /// Below this, with so many standard errors, the force moves nothing.
 const MOVES: f64 = 0.3;
 const SIGMAS: f64 = 3.0;
+/// And the speed is held where what was recorded of its changes is at most this share of what the force would make, in the root
+/// mean square: over hills a driver pushes while the vehicle slows down, and that is no held speed.
+const HELD: f64 = 0.25;
 
 /// Causes that only an acceleration tells, or how it follows a force: whoever holds the speed makes the force follow the speed.
 pub const UNTOLD: [&str; 7] =
@@ -45,7 +48,8 @@ pub fn moved(runs: &[Recorded], fit: &[bool]) -> Option<f64> {
     let slope = pairs.iter().map(|(made, told)| made * told).sum::<f64>() / square;
     let left: f64 = pairs.iter().map(|(made, told)| (told - slope * made).powi(2)).sum();
     let error = (left / pairs.len() as f64 / square).sqrt();
-    (slope + SIGMAS * error < MOVES).then_some(slope)
+    let recorded: f64 = pairs.iter().map(|(_, told)| told * told).sum();
+    (slope + SIGMAS * error < MOVES && recorded < HELD * HELD * square).then_some(slope)
 }
 
 /// What the recorded force makes of the speed in each block, and what was recorded of it [m/s²].

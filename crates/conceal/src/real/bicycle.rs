@@ -26,7 +26,13 @@ pub fn rows(options: &Options) -> Result<Vec<Row>, ConcealError> {
     let area = |run: &str| -> Option<f64> {
         /// Density that the scenario states [kg/m³].
         const DENSITY_KG_M3: f64 = 1.21;
-        let (time_s, force) = said.series(run, &["aerodynamic_drag_n"])?;
+        let rounds =
+            (1..=3).filter_map(|round| said.series(&format!("{run}.{round}"), &["aerodynamic_drag_n"]));
+        let (time_s, force): (Vec<f64>, Vec<f64>) =
+            rounds.flat_map(|(time_s, force)| time_s.into_iter().zip(force)).unzip();
+        if time_s.is_empty() {
+            return None;
+        }
         let path = options.recordings.join(SET).join(format!("given/{run}.csv"));
         let log = Table::read(&path).ok()?;
         let minutes: Vec<f64> = log.numbers("Minutes")?.iter().map(|minutes| 60.0 * minutes).collect();

@@ -29,7 +29,8 @@ impl State<'_> {
         }
         let pool = Pool { sd: self.doubted(&self.pool.sd, doubt), ..self.pool.clone() };
         let held = State { pool: &pool, ..*self }.settle(&stand.parts, &stand.noises);
-        held.map_or_else(
+        // Causes that would have to be what they cannot be beside it leave all as it is.
+        held.filter(|held| !self.impossible(&held.parts, &held.estimate)).map_or_else(
             || stand.clone(),
             |mut held| {
                 held.estimate.covariance *= doubt;

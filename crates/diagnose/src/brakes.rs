@@ -83,6 +83,9 @@ enum Rolling {
 
 /// Stretches that are none of the ground.
 pub fn off_the_ground(case: &Case, sound: &[Vec<bool>], events: &[Event]) -> Vec<Event> {
+    if events.is_empty() {
+        return Vec::new();
+    }
     let excess = excesses_n(case, sound, Rolling::Taken);
     events.iter().filter(|event| !is_ground(case, &excess, event)).cloned().collect()
 }

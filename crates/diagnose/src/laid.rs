@@ -54,7 +54,7 @@ pub fn lay(runs: &mut [RecordedRun]) -> Result<Vec<String>, DiagnoseError> {
         let reversed = |place: usize| runs[own[place]].reversed;
         let mut path = Path::new(&tracks[longest], &driven[longest], reversed(longest));
         let mut positions: Vec<Option<Vec<f64>>> = vec![None; own.len()];
-        // What reaches no further than where the path is so far may be reached once another was laid.
+        // A run that does not meet the path as it is so far may meet it once another was laid.
         loop {
             let before = positions.iter().flatten().count();
             for place in (0..own.len()).filter(|place| positions[*place].is_none()).collect::<Vec<_>>() {

@@ -183,6 +183,17 @@ fn a_speed_that_is_nought_for_a_moment_is_a_dropout_and_no_brake() {
     assert!(held.noise < 0.03 && held.rmse_after < 3.0 * held.noise, "{held:?}");
 }
 
+/// A speed that is set right by its latency ends before the other channels do; so it was with every coast-down of ten seconds
+/// whose receiver was said to be late by two tenths, and each was told as a sensor that loses samples.
+#[test]
+fn a_speed_that_ends_before_the_others_is_no_dropout() {
+    let ends = changed(&recorded(0.069, ""), "speed_m_s", |value, trace, index| {
+        if index * 100 > 96 * trace.len() { f64::NAN } else { value }
+    });
+    let found = found(&ends, &Options::default()).unwrap();
+    assert!(ids(&found).is_empty() && found.diagnosis.verdict == Verdict::None, "{}", found.diagnosis.answer);
+}
+
 /// Half a second of latency beside a drag: the fault is taken out before the drag is told.
 #[test]
 fn a_late_speed_is_told_beside_a_drag() {

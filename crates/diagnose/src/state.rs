@@ -86,13 +86,17 @@ fn choice(cause: &Cause) -> f64 {
     const BY_THE_CLOCK: f64 = 3.0;
     /// No recording tells a tilt from the offset that it makes, which is the plainer thing to say.
     const TILT: f64 = 1.0;
+    /// Drag of the air that is stated wrongly is the plainer square of speed.
+    const SQUARE: f64 = 1.0;
     let clock = cause.terms.iter().any(|term| term.name == "from_s");
     let found = cause.law.as_ref().map_or(0.0, |law| law.cost);
     let tilt = cause.id == "accelerometer_tilt";
+    let square = cause.terms.iter().any(|term| term.name == "quadratic");
     found
         + (cause.shapes.len().max(1) as f64).ln()
         + if clock { BY_THE_CLOCK } else { 0.0 }
         + if tilt { TILT } else { 0.0 }
+        + if square { SQUARE } else { 0.0 }
 }
 
 impl<'a> State<'a> {

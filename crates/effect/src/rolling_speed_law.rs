@@ -15,6 +15,7 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RollingSpeedLaw {
+    #[serde(default)]
     linear: f64,
     #[serde(default)]
     quadratic: f64,
@@ -30,7 +31,8 @@ impl Plugin for RollingSpeedLaw {
         validity: "below the speed of standing waves in the tyre",
         parameters: &[
             parameter("linear", "1", "change of the coefficient from rest to v₀, linear part, c₁")
-                .usually(-0.05, 0.05),
+                .usually(-0.05, 0.05)
+                .or(0.0),
             parameter("quadratic", "1", "change of the coefficient from rest to v₀, quadratic part, c₂")
                 .usually(-0.05, 0.05)
                 .or(0.0),

@@ -84,6 +84,24 @@ fn speed_law(around: &Around, reference_m_s: f64) -> Cause {
     .shaped(vec![vec![reference_m_s]])
 }
 
+/// The same with the square of speed, where forces tell of it: powers follow too much else that bends with speed. Drag of the air
+/// is this as well, but for winds and for masses that differ, and is the commoner error.
+fn square_law(around: &Around, reference_m_s: f64) -> Option<Cause> {
+    let [reference_m_s, usual_m_s] =
+        [reference_m_s, around.speeds_m_s[2]].map(|speed| speed.max(SLOWEST_REFERENCE_M_S));
+    let quadratic = linear("quadratic", "1", 0.015 * (reference_m_s / usual_m_s).powi(2));
+    let law = cause(
+        "rolling_speed_law",
+        MOTION,
+        vec![quadratic, shape("reference_speed_m_s", "m/s").held(reference_m_s)],
+        "F = Δc ((v/v₀)² − 1) N",
+        &["speed_m_s"],
+        "rolling resistance that depends otherwise on speed, by its square",
+        "tow or coast at 2, 5, 10 and 20 km/h",
+    );
+    (around.pulls || !around.drives).then(|| law.shaped(vec![vec![reference_m_s]]))
+}
+
 /// A time constant; what takes several times as long as the longest run does not change within it, and no oil or tyre warms
 /// up within seconds.
 fn fading(around: &Around) -> Term {
@@ -469,6 +487,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
         ),
     ];
     all.extend(by_run(around, pull));
+    all.extend([around.speeds_m_s[2], 0.0].into_iter().filter_map(|speed| square_law(around, speed)));
     if has("curvature_per_m") {
         all.push(cause(
             "cornering_drag",

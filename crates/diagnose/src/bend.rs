@@ -73,6 +73,31 @@ pub fn bend(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> Res
     Ok(added)
 }
 
+/// Adds strong winds from all sides. One of 10 m/s is not ten times one of 1 m/s, and next to nothing like it where vehicles are
+/// slow; so by the small one it would be overlooked beside other causes, and never be made anew.
+pub fn winds(case: &Case, system: &System, pool: &mut Pool) -> Result<(), DiagnoseError> {
+    /// A fresh breeze, 5 on Beaufort's scale, as strong as anybody measures in [m/s].
+    const FRESH_M_S: f64 = 9.0;
+    const SIDES: u8 = 8;
+    let is_wind = |trial: &&Trial| {
+        let cause = &case.causes[trial.cause];
+        is_whole(cause) && cause.form == Form::Parameters && trial.terms.len() == cause.terms.len()
+    };
+    let Some(small) = pool.trials.iter().find(is_wind).cloned() else { return Ok(()) };
+    let scales: Vec<f64> = small.columns.iter().map(|column| pool.sd[*column]).collect();
+    for side in 0..SIDES {
+        // Never quite along a part, which would then be nought and have no column.
+        let (east, north) = (std::f64::consts::TAU * (f64::from(side) + 0.3) / f64::from(SIDES)).sin_cos();
+        let made = divided(case, system, &small, &[FRESH_M_S * north, FRESH_M_S * east])?;
+        let first = pool.columns.len();
+        let columns = (first..first + made.len()).collect();
+        pool.columns.extend(made);
+        pool.sd.extend(&scales);
+        pool.trials.push(Trial { columns, ..small.clone() });
+    }
+    Ok(())
+}
+
 /// Adds one trial anew, if it is not in proportion.
 fn bent(
     case: &Case,

@@ -125,9 +125,12 @@ fn excess_n(run: &Recorded, said: &Said, sound: &[bool], rolling: Rolling) -> Op
     run.force_n.as_ref()?;
     let trace = &run.measured.trace;
     let coasting = trace.get("coasting");
+    let heard = heard(trace.time_s(), |index| {
+        sound[index] && trace.get("speed_m_s").is_none_or(|speed| speed[index].is_finite())
+    });
     let raw: Vec<f64> = (0..trace.len())
         .map(|index| {
-            let known = sound[index]
+            let known = heard[index]
                 && run.motion.value[index] > SLOWEST_M_S
                 && (rolling == Rolling::Taken || coasting.is_none_or(|values| values[index] < 0.5));
             let left = force(run, index)
@@ -137,6 +140,21 @@ fn excess_n(run: &Recorded, said: &Said, sound: &[bool], rolling: Rolling) -> Op
         })
         .collect();
     Some(averaged(trace.time_s(), &raw))
+}
+
+/// Which samples have others all around them: beside a gap the slope of the speed is told from one side, and a torque that changes
+/// meanwhile would leave a brake.
+fn heard(time_s: &[f64], known: impl Fn(usize) -> bool) -> Vec<bool> {
+    /// So far a gap reaches into what is beside it [s].
+    const BESIDE_S: f64 = 0.6;
+    let mut heard: Vec<bool> = (0..time_s.len()).map(&known).collect();
+    let lost: Vec<usize> = (0..time_s.len()).filter(|index| !heard[*index]).collect();
+    for index in lost {
+        let from = time_s.partition_point(|time| *time < time_s[index] - BESIDE_S);
+        let to = time_s.partition_point(|time| *time <= time_s[index] + BESIDE_S);
+        heard[from..to].fill(false);
+    }
+    heard
 }
 
 /// Mean over [`WINDOW_S`], or over a few samples where those are rarer, around each sample that is known, where it has others on
@@ -233,6 +251,16 @@ mod tests {
             (0..40).map(|index| 0.2 * f64::from(index) + 0.07 * f64::from(index % 3)).collect();
         let mean = averaged(&time_s, &[2.0; 40]);
         assert!(mean[2..38].iter().all(|value| (value - 2.0).abs() < 1e-12), "{mean:?}");
+    }
+
+    /// Five of seven electric drives whose speed was lost now and then were told to have braked beside the gaps.
+    #[test]
+    fn beside_a_gap_nothing_is_told_of_brakes() {
+        let time_s: Vec<f64> = (0..60).map(|index| 0.1 * f64::from(index)).collect();
+        let heard = heard(&time_s, |index| !(20..=30).contains(&index));
+        let silent: Vec<usize> = (0..60).filter(|index| !heard[*index]).collect();
+        // 0.6 s on either side of 2.0 to 3.0 s.
+        assert_eq!((silent[0], silent[silent.len() - 1], silent.len()), (14, 36, 23));
     }
 
     #[test]

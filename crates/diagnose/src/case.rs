@@ -76,6 +76,8 @@ pub(crate) struct Case<'a> {
     pub no_faults: Vec<&'static str>,
     /// What the way says of the scale of the speed, which the runs are corrected for where it is wrong.
     pub scale: Option<Scale>,
+    /// How late the speed of coast-downs was before the runs were corrected for it [s], where it was.
+    pub late_s: Option<f64>,
     /// The causes that are tried, where it is not all of them.
     pub only: Option<BTreeSet<usize>>,
     /// What is known of the sensors: channel and sensor.
@@ -142,6 +144,7 @@ impl<'a> Case<'a> {
             corrections: Vec::new(),
             no_faults: right(&prepared).into_iter().collect(),
             scale: prepared.scale,
+            late_s: None,
             sensors: recording.runs.iter().flat_map(|run| run.sensors.clone()).collect(),
             only: None,
             paths,

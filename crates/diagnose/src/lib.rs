@@ -12,6 +12,7 @@
 mod abreast;
 mod balance;
 mod band;
+mod begun;
 mod bend;
 mod brakes;
 mod case;
@@ -114,6 +115,9 @@ pub fn diagnose(
     faults.extend(case.faulty_scale().as_ref().map(faults::scaled));
     faults.retain(|fault| case.wanted(fault.id));
     engine_off::leave_out(&mut case, &mut sound);
+    if let Some(late) = begun::late(&case) {
+        faults.extend(begun::set_right(&mut case, late, &mut sound)?);
+    }
     case.sound.clone_from(&sound);
     let against = contradiction::statements(&case, &sound);
     if !against.is_empty() {

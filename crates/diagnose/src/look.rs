@@ -213,7 +213,10 @@ fn prepared(case: &Case, usable: &[Vec<bool>]) -> Result<(System, Pool), Diagnos
     if system.kinds.is_empty() {
         return Err(DiagnoseError::NoBalance { channels: case.channels() });
     }
-    let pool = pool(case, &system)?;
+    let mut pool = pool(case, &system)?;
+    if system.row_count() <= MANY_ROWS {
+        bend::winds(case, &system, &mut pool)?;
+    }
     Ok((system, pool))
 }
 

@@ -11,6 +11,9 @@ use headland_calibrate::statistics::{quantile_of_sorted, sorted};
 /// A squared correlation below which a cause does not stand for another one.
 const UNLIKE: f64 = 0.02;
 
+/// Where something is as good as a cause anyway, what comes close to it is named as well: odds of one to a hundred and fifty.
+const TOLERANCE_IN_DOUBT: f64 = 5.0;
+
 /// The other name of a function of the path, where it has one: driven one way alone, slopes and softer ground are the same.
 pub fn twin(id: &str) -> Option<&'static str> {
     match id {
@@ -26,14 +29,17 @@ impl State<'_> {
         let (id, Some(lesser)) = (self.id(&side.part.trial), &side.lesser) else { return Vec::new() };
         let Some(reduced) = self.reduced(&best.noises, &lesser.parts) else { return Vec::new() };
         let mut rivals: Vec<Rival> = Vec::new();
+        let mut doubtful = false;
         for other in &side.contests {
             let Some(own) = other.stand.parts.last() else { continue };
             let listed = rivals.iter().any(|rival| self.case.causes[rival.cause].id == self.id(&own.trial));
-            let as_good = other.stand.score > best.score - TOLERANCE;
-            let alike = as_good || self.is_place_told_one_way(&side.part.trial, &own.trial);
+            let behind = best.score - other.stand.score;
+            let one_way = self.is_place_told_one_way(&side.part.trial, &own.trial);
+            let alike = behind < TOLERANCE_IN_DOUBT || one_way;
             if self.id(&own.trial) == id || listed || !alike {
                 continue;
             }
+            doubtful |= behind < TOLERANCE || one_way;
             let correlation = reduced.squared_correlation(
                 &side.part.trial.columns,
                 &own.trial.columns,
@@ -47,7 +53,7 @@ impl State<'_> {
                 free: self.free_beside(&other.stand),
             });
         }
-        rivals
+        if doubtful { rivals } else { Vec::new() }
     }
 
     /// Whether one cause is a law of places alone and the other a map of them, and neither was a path driven both ways nor an

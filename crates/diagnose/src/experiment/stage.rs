@@ -90,6 +90,7 @@ impl<'a> Stage<'a> {
             corrections: case.corrections.clone(),
             no_faults: case.no_faults.clone(),
             scale: case.scale,
+            late_s: case.late_s,
             sensors: case.sensors.clone(),
             only: None,
             nominal: Vec::new(),

@@ -102,7 +102,12 @@ pub fn faulty(fault: &Fault, system: &System) -> FindingReport {
         depends_on: vec![fault.channel.clone()],
         stretches: fault.stretches.clone(),
         parameters: vec![ParameterReport {
-            name: if fault.id == "speed_scale" { "scale" } else { "size" }.to_owned(),
+            name: match fault.id {
+                "speed_scale" => "scale",
+                "latency" => "latency_s",
+                _ => "size",
+            }
+            .to_owned(),
             value: fault.size,
             ci95: fault.ci95.unwrap_or([fault.size, fault.size]),
             unit: fault.unit.clone(),

@@ -48,7 +48,8 @@ pub fn corrections(case: &Case, refined: &Refined) -> Vec<(String, f64, f64, f64
         _ => None,
     };
     let way = case.faulty_scale().map(|scale| ("speed_scale", scale.value));
-    way.into_iter().chain(refined.artefacts()).filter_map(correction).collect()
+    let begins = case.late_s.map(|late_s| ("latency", late_s));
+    way.into_iter().chain(begins).chain(refined.artefacts()).filter_map(correction).collect()
 }
 
 /// What every balance leaves over in every run.

@@ -158,6 +158,10 @@ pub fn fault(fault: &crate::faults::Fault) -> String {
              corrected.",
             with_interval(fault.size, fault.ci95.unwrap_or([fault.size; 2]), "")
         ),
+        "latency" => format!(
+            "{channel} goes on as it was for {} at the begin of the coast-downs: the sensor is late; it was corrected.",
+            with_interval(fault.size, fault.ci95.unwrap_or([fault.size; 2]), &fault.unit)
+        ),
         "dropout" if fault.leaps => format!(
             "{channel} leaps away and back, as nothing that it measures can, in {:.1} % of its samples; they were left out.",
             100.0 * fault.size

@@ -3,6 +3,7 @@
 use super::setting::{found_of_scenario, named, recording_of_scenario};
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{DiagnoseError, Diagnosed, Options, Verdict};
+use headland_trace::{Origin, Trace};
 
 /// Ten coast-downs to and fro, from two speeds; `more` are further fields.
 fn scenario(effects: &str, more: &str) -> String {
@@ -39,6 +40,35 @@ fn found(hidden: &str, more: &str) -> Result<Diagnosed, DiagnoseError> {
     let noisy = |_: &str, value: f64, draws: &mut Draws| value + 0.03 * draws.normal();
     let recording = recording_of_scenario(&scenario(hidden, ""), &registry, &["speed_m_s"], (41, &noisy));
     found_of_scenario(&scenario("", more), &recording, &Options::default(), &registry)
+}
+
+/// A receiver that is late still says the speed of before where a coast-down begins, in every run and wherever that is. It was told
+/// as slopes at the places where the runs begin, and as a brake.
+#[test]
+fn a_speed_that_goes_on_at_the_begin_of_every_coast_down_is_late() {
+    const LATE: usize = 6;
+    let registry = headland_stock::registry();
+    let exact = |_: &str, value: f64, _: &mut Draws| value;
+    let text = scenario("", "").replace("coefficient: 0.02)", "coefficient: 0.06)");
+    let prompt = recording_of_scenario(&text, &registry, &["speed_m_s"], (0, &exact));
+    let mut late = prompt.clone();
+    for (number, run) in late.runs.iter_mut().enumerate() {
+        let (exact, mut draws) = (run.trace.get("speed_m_s").unwrap().to_vec(), Draws::new(7, number as u64));
+        let said = (0..exact.len()).map(|index| exact[index.saturating_sub(LATE)] + 0.03 * draws.normal());
+        let said = said.collect();
+        run.trace = Trace::new(run.trace.time_s().to_vec()).unwrap();
+        run.trace.push("speed_m_s", said, Origin::Measured).unwrap();
+    }
+    let found = found_of_scenario(&text, &late, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    assert_eq!(said.verdict, Verdict::SensorArtefact, "{}", said.answer);
+    assert_eq!((said.findings.len(), said.findings[0].id.as_str()), (1, "latency"), "{}", said.answer);
+    let [low, high] = said.findings[0].parameters[0].ci95;
+    let truth_s = 0.05 * LATE as f64;
+    assert!((low..=high).contains(&truth_s) && high - low < 0.1, "{low} to {high} s");
+    // And the improved recording is set right by it.
+    let (channel, latency_s, _, _) = &found.corrections[0];
+    assert!(channel == "speed_m_s" && (low..=high).contains(latency_s), "{:?}", found.corrections);
 }
 
 fn noted(found: &Diagnosed, what: &str) -> bool {

@@ -140,8 +140,10 @@ pub fn diagnose(
     look.sharpen(&case)?;
     let events = spells::spells(&mut case, &mut look, &sound, &braked)?;
     let (system, mut pool, found) = look.closer(&mut case)?;
+    let listed = found.clone();
     let found = unlisted::unlisted(&mut case, &system, &mut pool, found)?;
     let proven = withdraw::proven(&case, &system, &mut pool, found, &events, &faults)?;
+    let proven = withdraw::or_listed(&case, &system, &mut pool, (proven, listed), &events, &faults)?;
     let proven = foreseen::foreseen(&case, &system, &mut pool, proven, &events, &faults)?;
     let withdraw::Proven { found, mut refined, withheld, proof } = proven;
     let next = experiment::propose(&case, &system, &pool, &found, &refined)?;

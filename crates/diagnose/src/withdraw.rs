@@ -153,6 +153,26 @@ pub fn proven(
     Ok(best)
 }
 
+/// What was proven; where that is nothing, since a law that nobody listed stood in the place of listed causes and was taken back,
+/// those causes, if they hold.
+pub fn or_listed(
+    case: &Case,
+    system: &System,
+    pool: &mut Pool,
+    (proven, listed): (Proven, Found),
+    events: &[Event],
+    faults: &[Fault],
+) -> Result<Proven, DiagnoseError> {
+    let is_law = |cause: &usize| case.causes[*cause].law.is_some();
+    let displaced = proven.found.unproven.iter().any(is_law) && !listed.stand.parts.is_empty();
+    if !proven.refined.causes.is_empty() || !displaced {
+        return Ok(proven);
+    }
+    let other = self::proven(case, system, pool, listed, events, faults)?;
+    let holds = !other.refined.causes.is_empty() && other.withheld.is_none() && !other.is_worse_than(&proven);
+    Ok(if holds { other } else { proven })
+}
+
 /// What was found without one law that nobody listed, without one map of a path, or without one listed cause that is hardly
 /// beyond chance, where runs held out are no better with it than without it or than with the nominal scenario, in the balance
 /// that it belongs to: formulas and maps are free to follow the runs that they were made of, and of many causes one fits the

@@ -2,7 +2,7 @@
 
 use crate::Case;
 use crate::abreast::{self, Abreast, Spreaded, clusters};
-use crate::balance::System;
+use crate::balance::{Kind, System};
 use crate::catalogue::{Cause, Form};
 use crate::gram::{Column, Estimate, Reduced, Whitened};
 use crate::look::MANY_ROWS;
@@ -207,9 +207,16 @@ impl<'a> State<'a> {
     pub fn choices(&self, parts: &[Part]) -> f64 {
         /// A function of time is shown by no other run, nor is one of a path that only one drove: it takes so much more.
         const NO_OTHER_RUN: f64 = 20.0;
+        /// Consumers that nobody logged are the rule on a battery, whose current hides little else.
+        const CONSUMER: f64 = 14.0;
+        let battery = self.system.kinds.iter().position(|kind| *kind == Kind::Battery);
         let cost = |part: &Part| {
             let alone = self.timed(part) || part.spread.is_some() && !self.paths_shared();
-            choice(self.cause(&part.trial)) + if alone { NO_OTHER_RUN } else { 0.0 }
+            let consumer = part.spread.is_some()
+                && self.id(&part.trial) == "auxiliary_power"
+                && battery.is_some_and(|battery| self.touches(&part.trial, battery));
+            let unshared = if consumer { CONSUMER } else { NO_OTHER_RUN };
+            choice(self.cause(&part.trial)) + if alone { unshared } else { 0.0 }
         };
         parts.iter().map(cost).sum()
     }

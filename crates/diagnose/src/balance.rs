@@ -102,6 +102,11 @@ impl Kind {
         }
     }
 
+    /// Its signal over its rows: fuel is balanced as the power that it holds.
+    pub fn per_unit(self) -> f64 {
+        if self == Self::Fuel { 1.0 / FUEL_J_KG } else { 1.0 }
+    }
+
     /// Channels whose renewals its rows wait for.
     fn channels(self) -> &'static [&'static str] {
         match self {

@@ -1,6 +1,6 @@
 //! Before and after, on runs that were fitted and on runs that were not.
 
-use crate::balance::{FUEL_J_KG, Kind, System, change};
+use crate::balance::{Kind, System, change};
 use crate::catalogue::{Class, Form};
 use crate::events::Event;
 use crate::gram::Column;
@@ -376,7 +376,7 @@ fn rows(
     effects: &[Reconstructed],
     kind: Kind,
 ) -> Result<Vec<Errors>, DiagnoseError> {
-    let unit = if kind == Kind::Fuel { 1.0 / FUEL_J_KG } else { 1.0 };
+    let unit = kind.per_unit();
     let said = case.said_of(runs, case.study.scenario(), &refined.values())?;
     let mut after = system.residual_of(runs, &said);
     for (cured, effect) in refined.causes.iter().zip(effects) {

@@ -52,6 +52,11 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
             consider(*cause, shape);
         }
     }
+    // A window of the grid begins and ends seconds beside the one that is there, and each edge beside its place costs it dearly.
+    let windows = round.causes.iter().filter(|one| one.2 > 0.0 && case.causes[one.0].window().is_some());
+    for (cause, shape, _) in windows.take(1) {
+        consider(*cause, shape);
+    }
     let mut added = false;
     for (cause, shape) in chosen {
         let accepted = found.accepted.iter().any(|one| one.trial.cause == cause);
@@ -59,7 +64,7 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
             let able = match how {
                 How::ByItself => true,
                 How::Beside => accepted,
-                How::Quietly => accepted && case.causes[cause].window().is_some(),
+                How::Quietly => case.causes[cause].window().is_some(),
             };
             if !able {
                 continue;

@@ -189,7 +189,11 @@ fn fit(case: &Case, system: &System, found: Option<&Found>, proof: &Proof) -> Fi
         runs: ids(case, wanted),
         rmse_before: errors.before,
         rmse_after: errors.after,
-        noise: proof.noise,
+        noise: if proof.noise.is_finite() {
+            proof.noise
+        } else {
+            neighbours(case, system, found, proof.signal)
+        },
     };
     let lack = match (&proof.held_out, proof.noise) {
         (Some(held), noise) if noise > 0.0 => held.after / noise,
@@ -208,6 +212,16 @@ fn fit(case: &Case, system: &System, found: Option<&Found>, proof: &Proof) -> Fi
         held_out: proof.held_out.as_ref().map(|errors| runs(false, errors)),
         lack_of_fit: lack,
     }
+}
+
+/// What neighbouring rows of a signal differ by, where no sensor's noise is known: NaN where nothing was told of it.
+fn neighbours(case: &Case, system: &System, found: Option<&Found>, signal: &str) -> f64 {
+    let number = system.kinds.iter().position(|kind| kind.signal() == signal);
+    found.zip(number).map_or(f64::NAN, |(found, number)| {
+        let stand = &found.stand;
+        let quiet = system.quiet(&stand.left, &case.fit, &stand.noises);
+        system.kinds[number].per_unit() * quiet.each[number].sd()
+    })
 }
 
 /// The free parameters that could be told.

@@ -122,7 +122,7 @@ pub struct FitRuns {
     pub rmse_before: f64,
     /// With what was found.
     pub rmse_after: f64,
-    /// What the sensor explains.
+    /// What the sensor explains: of a speed the noise of its sensor, of other signals what neighbouring rows differ by.
     pub noise: f64,
 }
 
@@ -137,6 +137,17 @@ pub struct Fit {
     pub held_out: Option<FitRuns>,
     /// Error at the end over the noise of the sensor: near 1 where nothing is left to explain.
     pub lack_of_fit: f64,
+}
+
+impl Fit {
+    /// What its noise is called.
+    pub fn noise_in_words(&self) -> &'static str {
+        if self.signal == "speed_m_s" {
+            "the noise of the sensor"
+        } else {
+            "what neighbouring stretches differ by"
+        }
+    }
 }
 
 /// An error that grows by more than this has grown.

@@ -167,7 +167,8 @@ fn proof(told: &Told) -> String {
     };
     let noise = fit.fitted.noise;
     let sensor = if noise.is_finite() {
-        format!(" (noise of the sensor: {})", quantity(noise, &unit))
+        let what = told.fit.noise_in_words();
+        format!(" ({}: {})", what.strip_prefix("the ").unwrap_or(what), quantity(noise, &unit))
     } else {
         String::new()
     };
@@ -194,11 +195,7 @@ fn left_over(told: &Told) -> Option<String> {
     /// Error at the end over the noise from which on something is left to explain.
     const MUCH: f64 = 2.0;
     let lack = told.fit.lack_of_fit;
-    let noise = if told.fit.fitted.noise.is_finite() {
-        "the noise of the sensor"
-    } else {
-        "what neighbouring stretches differ by"
-    };
+    let noise = told.fit.noise_in_words();
     let much = (lack.is_finite() && lack > MUCH).then(|| {
         if told.verdict == Verdict::None {
             format!("What is left is {lack:.1} times {noise}, without a pattern that stands out.")

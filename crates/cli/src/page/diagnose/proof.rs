@@ -26,7 +26,9 @@ pub fn proof(found: &Diagnosed) -> Section {
     }
     figure("Error before, fitted runs", fit.fitted.rmse_before);
     figure("Error after, fitted runs", fit.fitted.rmse_after);
-    figure("Noise of the sensor", fit.fitted.noise);
+    let noise = fit.noise_in_words();
+    let noise = noise.strip_prefix("the ").unwrap_or(noise);
+    figure(&format!("{}{}", noise[..1].to_uppercase(), &noise[1..]), fit.fitted.noise);
     let mut section = Section::new("Before and after")
         .words(format!("Root mean square error of {signal}."))
         .with(Item::Figures(figures));

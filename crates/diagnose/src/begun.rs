@@ -224,7 +224,7 @@ fn in_neutral(runs: &[Recorded], said: &[Said], delay_s: f64) -> Option<bool> {
             samples += 1;
         }
     }
-    (samples > 0).then(|| shown > IN_NEUTRAL * made)
+    (samples > 0).then_some(shown > IN_NEUTRAL * made)
 }
 
 #[cfg(test)]

@@ -191,6 +191,7 @@ impl State<'_> {
             effects.push(rows);
         }
         self.named_in_neutral(&best, &mut accepted);
+        self.named_level(&best, &mut accepted);
         Found {
             tried,
             unproven,

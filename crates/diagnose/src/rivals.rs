@@ -6,13 +6,16 @@ use crate::conclude::Side;
 use crate::search::{Accepted, Beside, Found, OTHER_WORDS, Rival, TOLERANCE, worth};
 use crate::state::{Stand, State};
 use crate::trial::Trial;
-use headland_calibrate::statistics::{quantile_of_sorted, sorted};
+use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
 
 /// A squared correlation below which a cause does not stand for another one.
 const UNLIKE: f64 = 0.02;
 
 /// Where something is as good as a cause anyway, what comes close to it is named as well: odds of one to a hundred and fifty.
 const TOLERANCE_IN_DOUBT: f64 = 5.0;
+
+/// A map of the ground that is the same everywhere.
+const LEVEL: &str = "rolling_resistance";
 
 /// The other name of a function of the path, where it has one: driven one way alone, slopes and softer ground are the same.
 pub fn twin(id: &str) -> Option<&'static str> {
@@ -64,6 +67,43 @@ impl State<'_> {
         let of_place = own.law.as_ref().is_some_and(|law| law.depends_on == ["position_m"]);
         let told = self.system.has(Kind::Parity) || self.case.drives_a_path_both_ways();
         of_place && other.form == Form::OverPosition && !told
+    }
+
+    /// Names a level of rolling resistance beside a map of the ground that lies off nought along most of the way: a patch is
+    /// nought elsewhere, and what is not is level and map in one.
+    pub fn named_level(&self, best: &Stand, accepted: &mut [Accepted]) {
+        /// The median lies so many standard deviations off, and is this share of what the map is in the root mean square.
+        const SIGMAS: f64 = 3.0;
+        const SHARE: f64 = 0.4;
+        let plain = |cause: &Cause| cause.form == Form::Parameters && cause.run.is_none();
+        let level = |cause: &Cause| cause.id == LEVEL && plain(cause);
+        let Some(cause) = self.case.causes.iter().position(level) else { return };
+        if accepted.iter().any(|one| self.id(&one.trial) == LEVEL) {
+            return;
+        }
+        for one in accepted.iter_mut() {
+            let even = self.cause(&one.trial).even().map(|(id, _)| id);
+            let by_place = self.cause(&one.trial).form == Form::OverPosition;
+            let Some(function) = one.function.as_ref().filter(|_| by_place && even == Some(LEVEL)) else {
+                continue;
+            };
+            let knots = || function.values.iter().flat_map(|(values, sds)| values.iter().zip(sds.iter()));
+            let (values, sds): (Vec<f64>, Vec<f64>) = knots().map(|(value, sd)| (*value, *sd)).unzip();
+            if values.is_empty() || one.rivals.iter().any(|rival| rival.cause == cause) {
+                continue;
+            }
+            let middle = median(&values);
+            let square = values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64;
+            let off = middle.abs() > SIGMAS * median(&sds) && middle.abs() > SHARE * square.sqrt();
+            if off {
+                one.rivals.push(Rival {
+                    cause,
+                    gain: one.gain,
+                    squared_correlation: middle * middle / square,
+                    free: self.free_beside(best),
+                });
+            }
+        }
     }
 
     /// The free parameters as a set has them.

@@ -48,6 +48,18 @@ fn a_patch_that_doubles_the_resistance_is_no_brake() {
     assert!(!named(&found, "braking"), "{}", found.diagnosis.answer);
 }
 
+/// A lane that is softer everywhere and has a patch: level and map are one sum, and both are named. A patch alone is no level.
+#[test]
+fn a_map_that_lies_off_nought_all_along_names_the_level_beside_it() {
+    let patch = "soft_ground(positions_m: [40, 70], coefficients: [0.035])";
+    let both = found(&format!("rolling_resistance(coefficient: 0.04), {patch}"));
+    for id in ["soft_ground", "rolling_resistance"] {
+        assert!(named(&both, id), "{id}: {}", both.diagnosis.answer);
+    }
+    let alone = found(patch);
+    assert!(!named(&alone, "rolling_resistance"), "{}", alone.diagnosis.answer);
+}
+
 /// What the speed is held by follows the ground, and moves nothing: a mass would be as large as it may be.
 #[test]
 fn runs_whose_speed_was_held_tell_no_mass() {

@@ -429,7 +429,7 @@ mod tests {
             speed_m_s: vec![10.0; 6000],
             auxiliaries_w: time_s.iter().map(power).collect(),
             acceleration_m_s2: vec![0.0; 6000],
-            surplus_w: Vec::new(),
+            surplus_w: vec![1500.0; 6000],
             ambient_c: vec![5.0; 6000],
             note: String::new(),
             time_s,

@@ -93,6 +93,13 @@ pub fn set_right(
         ));
         return Ok(None);
     }
+    if late.sensor.is_none() {
+        case.study.notes.push(
+            "No accelerometer tells whether the speed is late or the runs begin before neutral; either way the speed belongs to \
+             what happened before."
+                .to_owned(),
+        );
+    }
     case.raw = corrected(&case.raw, LATENCY, late.value)?;
     case.runs.clone_from(&case.raw);
     case.late_s = Some(late.value);

@@ -78,7 +78,7 @@ pub fn bend(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> Res
 pub fn winds(case: &Case, system: &System, pool: &mut Pool) -> Result<(), DiagnoseError> {
     /// A fresh breeze, 5 on Beaufort's scale, as strong as anybody measures in [m/s].
     const FRESH_M_S: f64 = 9.0;
-    const SIDES: u8 = 8;
+    const SIDES: u8 = 6;
     let is_wind = |trial: &&Trial| {
         let cause = &case.causes[trial.cause];
         is_whole(cause) && cause.form == Form::Parameters && trial.terms.len() == cause.terms.len()
@@ -154,11 +154,20 @@ fn divided(
     if values.len() == 1 {
         return Ok(vec![shared(&whole, values[0])]);
     }
+    let alone: Vec<Column> =
+        (0..values.len()).map(|place| with(&|own| own == place)).collect::<Result<_, _>>()?;
     let mut made = Vec::new();
     for (place, value) in values.iter().enumerate() {
-        let (alone, others) = (with(&|own| own == place)?, with(&|own| own != place)?);
+        // Of two, what is not the one is the other.
+        let all_others;
+        let others = if values.len() == 2 {
+            &alone[1 - place]
+        } else {
+            all_others = with(&|own| own != place)?;
+            &all_others
+        };
         let mut column = whole.clone();
-        for ((rows, alone), others) in column.iter_mut().zip(&alone).zip(&others) {
+        for ((rows, alone), others) in column.iter_mut().zip(&alone[place]).zip(others) {
             *rows += alone;
             *rows -= others;
         }

@@ -1,6 +1,7 @@
 //! Shapes between the points of a grid: what lies between them must not be left for another cause to explain.
 
 use crate::catalogue::Form;
+use crate::look::MANY_ROWS;
 use crate::search::Found;
 use crate::state::{Part, State};
 use crate::trial::{Pool, add_trial};
@@ -53,8 +54,10 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
         }
     }
     // A window of the grid begins and ends seconds beside the one that is there, and each edge beside its place costs it dearly.
+    // Where there are many rows that takes long, and their windows are long as well.
+    let few = system.row_count() <= MANY_ROWS;
     let windows = round.causes.iter().filter(|one| one.2 > 0.0 && case.causes[one.0].window().is_some());
-    for (cause, shape, _) in windows.take(1) {
+    for (cause, shape, _) in windows.take(usize::from(few)) {
         consider(*cause, shape);
     }
     let mut added = false;
@@ -64,7 +67,7 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
             let able = match how {
                 How::ByItself => true,
                 How::Beside => accepted,
-                How::Quietly => case.causes[cause].window().is_some(),
+                How::Quietly => (accepted || few) && case.causes[cause].window().is_some(),
             };
             if !able {
                 continue;

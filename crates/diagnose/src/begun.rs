@@ -77,7 +77,9 @@ pub fn set_right(
 ) -> Result<Option<Fault>, DiagnoseError> {
     let stretches = case.runs.iter().map(|run| {
         let time_s = run.measured.trace.time_s();
-        place(run, 0, time_s.iter().take_while(|time| **time < time_s[0] + late.value).count())
+        let until = time_s.iter().take_while(|time| **time < time_s[0] + late.value).count();
+        // A run may be over before its delay is.
+        place(run, 0, until.min(time_s.len() - 1))
     });
     let stretches: Vec<Interval> = stretches.collect();
     if late.sensor == Some(false) {

@@ -1,6 +1,7 @@
 //! The balances: what was measured against what the model says, row by row, all of them side by side.
 
 use crate::gram::Column;
+use crate::likeliest::{Weighted, likeliest};
 use crate::noise::{Noise, Noises, Shape};
 use crate::recorded::{Recorded, SLOWEST_M_S};
 use crate::renewal::renewed_s;
@@ -302,7 +303,8 @@ impl System {
             let residuals: Vec<&DVector<f64>> = own().map(|(_, values)| values).collect();
             let weights: Vec<Option<&DVector<f64>>> =
                 own().map(|((index, _), _)| tails.map(|tails| tails.weights(index))).collect();
-            Noise::weighted(kind.shape(), most, self.usual[number], &residuals, &weights)
+            let rows = Weighted { residuals: &residuals, weights: &weights };
+            likeliest(kind.shape(), most, self.usual[number], rows)
         };
         let mut noises = Noises::normal(self.kinds.iter().enumerate().map(of).collect());
         if let Some(before) = before {

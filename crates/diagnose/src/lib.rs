@@ -39,6 +39,7 @@ mod in_neutral;
 mod jumps;
 mod laid;
 mod leaps;
+mod likeliest;
 mod locate;
 mod look;
 mod losses;

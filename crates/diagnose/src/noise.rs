@@ -1,6 +1,6 @@
 //! What is left of a balance when nothing is missing: noise of the sensors and small unsteadiness of the world.
 //!
-//! Two parts, found by maximum likelihood: noise of the sensors, which the weak form gives a known covariance, and a
+//! Two parts, found by maximum likelihood (likeliest.rs): noise of the sensors, which the weak form gives a known covariance, and a
 //! first-order autoregressive process for everything that is neither sensor nor model.
 //! Source: Rasmussen and Williams, *Gaussian Processes for Machine Learning* (2006), section 5.4 and appendix B.
 //!
@@ -47,22 +47,15 @@ pub struct Noise {
 /// What turns the rows of a chunk, of any length up to the longest, into white noise of unit variance.
 #[derive(Clone, Debug)]
 pub struct Whitener {
-    persistence: f64,
-    /// Diagonals of L, row by row: two to the left, one to the left, its own.
-    factor: Vec<[f64; 3]>,
+    pub persistence: f64,
+    /// Diagonals of L, row by row: two to the left, one to the left, its own. From the last on they stay as they are.
+    pub factor: Vec<[f64; 3]>,
     /// ln |Σ| of the first rows: of none, of one, of two, …
     log_determinants: Vec<f64>,
 }
 
 /// A touch more on the diagonal keeps differences of ever more blocks apart.
 const APART: f64 = 1e-3;
-/// Shares of the process in the variance that are tried.
-const SHARES: [f64; 8] = [0.0, 0.03, 0.1, 0.25, 0.5, 0.75, 0.93, 1.0];
-/// Correlations of the process that are tried.
-const PERSISTENCES: [f64; 6] = [0.0, 0.4, 0.7, 0.88, 0.96, 0.99];
-/// A share or correlation is refined between those that were tried, so many times halving the way.
-const REFINEMENTS: usize = 3;
-
 impl Noise {
     /// Standard deviation of a row.
     pub fn sd(&self) -> f64 {
@@ -110,96 +103,21 @@ impl Noise {
             if square.is_nan() || square <= 0.0 {
                 return None;
             }
-            factor.push([left2, left1, square.sqrt()]);
-            log += square.ln();
+            let next = [left2, left1, square.sqrt()];
+            let ln = square.ln();
+            log += ln;
             log_determinants.push(log);
+            let settled = row > 3 && one == next && two == next;
+            if settled {
+                log_determinants.extend((row + 1..longest).map(|_| {
+                    log += ln;
+                    log
+                }));
+                break;
+            }
+            factor.push(next);
         }
         Some(Whitener { persistence: rho, factor, log_determinants })
-    }
-
-    /// The noise that makes residuals (one vector a chunk) most likely; the process correlates neighbouring rows by `most`
-    /// at most.
-    #[cfg(test)]
-    pub fn of(shape: Shape, most: f64, residuals: &[&DVector<f64>]) -> Self {
-        Self::weighted(shape, most, None, residuals, &vec![None; residuals.len()])
-    }
-
-    /// The noise that makes residuals (one vector a chunk) most likely; the process correlates neighbouring rows by `most`
-    /// at most, and lasts with the variance that is `usual`, where any is. Rows count as much as their weights say, or all
-    /// alike.
-    pub fn weighted(
-        shape: Shape,
-        most: f64,
-        usual: Option<f64>,
-        residuals: &[&DVector<f64>],
-        weights: &[Option<&DVector<f64>>],
-    ) -> Self {
-        let nothing = Self { shape, sensor: 1.0, process: 0.0, persistence: 0.0 };
-        let mut best = (f64::INFINITY, nothing);
-        let mut place = (0.0, 0.0);
-        let mut consider = |share: f64, persistence: f64, place: &mut (f64, f64)| {
-            let Some((deviance, tried)) = Self::with(shape, share, persistence, residuals, weights) else {
-                return;
-            };
-            let deviance = deviance - 2.0 * tried.prior(usual);
-            if deviance < best.0 {
-                best = (deviance, tried);
-                *place = (share, persistence);
-            }
-        };
-        for share in SHARES {
-            for persistence in PERSISTENCES.into_iter().map(|one| one.min(most)) {
-                if share > 0.0 || persistence == 0.0 {
-                    consider(share, persistence, &mut place);
-                }
-            }
-        }
-        // Half way to the neighbours, then a quarter of the way, …
-        let near = |grid: &[f64], value: f64| {
-            let above = grid.iter().copied().find(|one| *one > value).unwrap_or(value);
-            let below = grid.iter().rev().copied().find(|one| *one < value).unwrap_or(value);
-            (value - below, above - value)
-        };
-        let mut share_way = near(&SHARES, place.0);
-        let mut persistence_way = near(&PERSISTENCES, place.1);
-        for _ in 0..REFINEMENTS {
-            (share_way.0, share_way.1) = (0.5 * share_way.0, 0.5 * share_way.1);
-            (persistence_way.0, persistence_way.1) = (0.5 * persistence_way.0, 0.5 * persistence_way.1);
-            let (share, persistence) = place;
-            for share in [share - share_way.0, share, share + share_way.1] {
-                for persistence in
-                    [persistence - persistence_way.0, persistence, persistence + persistence_way.1]
-                {
-                    if share > 0.0 && persistence <= most {
-                        consider(share, persistence, &mut place);
-                    }
-                }
-            }
-        }
-        best.1
-    }
-
-    /// Deviance of residuals at a share and a correlation, with the variance that suits best.
-    fn with(
-        shape: Shape,
-        share: f64,
-        persistence: f64,
-        residuals: &[&DVector<f64>],
-        weights: &[Option<&DVector<f64>>],
-    ) -> Option<(f64, Self)> {
-        let unit = Self { shape, sensor: 1.0 - share, process: share, persistence };
-        let whitener = unit.whitener(residuals.iter().map(|one| one.len()).max()?)?;
-        let (mut sum, mut log_determinant, mut count) = (0.0, 0.0, 0usize);
-        for (residual, weights) in residuals.iter().zip(weights) {
-            sum += whitener.norm_squared(residual.as_slice(), *weights);
-            log_determinant += whitener.log_determinant(residual.len());
-            count += residual.len();
-        }
-        let variance = (sum / count as f64).max(f64::MIN_POSITIVE);
-        let deviance = count as f64 * variance.ln() + log_determinant;
-        let noise =
-            Self { shape, sensor: variance * unit.sensor, process: variance * unit.process, persistence };
-        deviance.is_finite().then_some((deviance, noise))
     }
 }
 
@@ -221,9 +139,14 @@ impl Passing {
 }
 
 impl Whitener {
+    /// Diagonals of L in one row.
+    pub fn row(&self, row: usize) -> [f64; 3] {
+        self.factor[row.min(self.factor.len() - 1)]
+    }
+
     /// One more row, white. There must not be more than it was made for.
     pub fn step(&self, passing: &mut Passing, value: f64) -> f64 {
-        let [left2, left1, own] = self.factor[passing.rows];
+        let [left2, left1, own] = self.row(passing.rows);
         let [one, two] = passing.white;
         let white = (value - self.persistence * passing.before - left1 * one - left2 * two) / own;
         *passing = Passing { rows: passing.rows + 1, before: value, white: [white, one] };
@@ -235,12 +158,6 @@ impl Whitener {
         for (row, value) in values.iter().enumerate() {
             take(row, self.step(&mut passing, *value));
         }
-    }
-
-    fn norm_squared(&self, values: &[f64], weights: Option<&DVector<f64>>) -> f64 {
-        let mut sum = 0.0;
-        self.each(values, |row, white| sum += weights.map_or(1.0, |weights| weights[row]) * white * white);
-        sum
     }
 
     /// L⁻¹ T x.
@@ -257,7 +174,8 @@ impl Whitener {
         for block in values.as_mut_slice().chunks_mut((LANES * rows).max(1)) {
             let lanes = block.len() / rows;
             let (mut before, mut one, mut two) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-            for (row, [left2, left1, own]) in self.factor.iter().take(rows).enumerate() {
+            for row in 0..rows {
+                let [left2, left1, own] = self.row(row);
                 for lane in 0..lanes {
                     let entry = &mut block[lane * rows + row];
                     let value = *entry;
@@ -366,17 +284,5 @@ mod tests {
                 assert!((whitener.log_determinant(9) - dense.determinant().ln()).abs() < 1e-9);
             }
         }
-    }
-
-    #[test]
-    fn the_noise_that_made_a_residual_is_found_again() {
-        let made = Noise { shape: Shape::Differenced, sensor: 4.0, process: 1.0, persistence: 0.8 };
-        let factor = made.covariance(140).cholesky().unwrap().unpack();
-        let mut draws = headland_calibrate::statistics::Draws::new(5, 0);
-        let all: Vec<DVector<f64>> =
-            (0..40).map(|_| &factor * DVector::from_fn(140, |_, _| draws.normal())).collect();
-        let found = Noise::of(Shape::Differenced, 1.0, &all.iter().collect::<Vec<_>>());
-        assert!((found.sensor / 4.0 - 1.0).abs() < 0.15, "{found:?}");
-        assert!((found.process - 1.0).abs() < 0.4 && (found.persistence - 0.8).abs() < 0.12, "{found:?}");
     }
 }

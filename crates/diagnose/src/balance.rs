@@ -4,12 +4,12 @@ use crate::gram::Column;
 use crate::likeliest::{Weighted, likeliest};
 use crate::noise::{Noise, Noises, Shape};
 use crate::recorded::{Recorded, SLOWEST_M_S};
-use crate::renewal::renewed_s;
 use crate::rows::{Chunk, Row, chunks};
 use crate::said::Said;
 use crate::tails::Tails;
 use crate::voltage::change_v;
 use headland_calibrate::statistics::{NORMAL_OF_MEDIAN, median};
+use headland_recording::renewed_s;
 use nalgebra::DVector;
 use serde::Serialize;
 

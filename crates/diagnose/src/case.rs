@@ -2,7 +2,7 @@
 
 use crate::DiagnoseError;
 use crate::balance::{Kind, Rows, System, bearing, block_s, kinds};
-use crate::catalogue::{Around, Cause, causes};
+use crate::catalogue::{ARTEFACTS, Around, Cause, causes};
 use crate::own::own;
 use crate::recorded::{Recorded, recorded};
 use crate::said::{Said, said};
@@ -80,6 +80,8 @@ pub(crate) struct Case<'a> {
     pub late_s: Option<f64>,
     /// The causes that are tried, where it is not all of them.
     pub only: Option<BTreeSet<usize>>,
+    /// Times of the rows of their logs [s], which may be more than the runs have.
+    pub logged_s: Vec<Vec<f64>>,
     /// What is known of the sensors: channel and sensor.
     pub sensors: Vec<(String, Sensor)>,
     /// Names of the paths, by the number that the runs have of them; none where a run drove alone.
@@ -145,6 +147,7 @@ impl<'a> Case<'a> {
             no_faults: right(&prepared).into_iter().collect(),
             scale: prepared.scale,
             late_s: None,
+            logged_s: prepared.logged_s.clone(),
             sensors: recording.runs.iter().flat_map(|run| run.sensors.clone()).collect(),
             only: None,
             paths,
@@ -469,8 +472,8 @@ fn idle(case: &Case) -> Option<String> {
 fn check_names(all: &[Cause], registry: &Registry, options: &Options) -> Result<(), DiagnoseError> {
     let mut known: Vec<&'static str> = all.iter().map(|cause| cause.id).collect();
     known.extend(registry.cards(headland_plugin::Kind::Effect).iter().map(|card| card.name));
-    known.extend(["latency", "speed_scale", "force_scale", "accelerometer_bias", "accelerometer_tilt"]);
-    known.extend(["clock_drift", "quantisation", "dropout", "stuck_channel", "unlisted"]);
+    known.extend(ARTEFACTS);
+    known.push("unlisted");
     known.sort_unstable();
     known.dedup();
     for id in options.without.iter().chain(&options.only) {

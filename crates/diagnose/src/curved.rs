@@ -2,8 +2,8 @@
 //! vehicle really turns: further than a lane bends by the noise of a compass, and so hard that its tyres could tell.
 
 use crate::DiagnoseError;
-use crate::renewal::renewed_s;
 use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
+use headland_recording::renewed_s;
 use headland_recording::{RecordedRun, Recording};
 use headland_sim::local_fit;
 use headland_trace::{Origin, Trace};

@@ -3,12 +3,15 @@
 //! Such a stretch begins with a leap and ends with a leap back, each of which would take more than tyres can give. A vehicle
 //! that brakes to a stand leaps nowhere, and one whose sensor says nought below some speed does not leap far.
 
-use crate::renewal::renewed_s;
 use headland_calibrate::statistics::median;
+use headland_recording::renewed_s;
 use headland_trace::Trace;
 
 /// Tyres and ground give no vehicle more than about 1.5 g [m/s²].
 const MOST_M_S2: f64 = 15.0;
+/// No vehicle stops and is off again by half of g within moments [m/s²]; a wheel that locks does, and that is no speed over ground.
+const MOST_OF_NOUGHT_M_S2: f64 = 5.0;
+const OVER_GROUND: &str = "speed_m_s";
 /// Sensors that count teeth, and radars, say nought below 0.5 to 1.4 m/s; a step from there is none of these leaps [m/s].
 const LEAST_M_S: f64 = 1.5;
 /// Where a sensor does leap further elsewhere in the run, a step from so little is one too [m/s].
@@ -43,7 +46,9 @@ fn further(trace: &Trace, name: &str, least_m_s: f64) -> Vec<(usize, usize)> {
     let (usual, renewed_s) = (median(&moves), renewed_s(trace, name));
     let leap = |place: usize| {
         let passed_s = (time_s[known[place]] - time_s[known[place - 1]]).max(renewed_s);
-        let most = (MOST_M_S2 * passed_s).max(STEPS * usual).max(least_m_s);
+        let nought = [place - 1, place].iter().any(|place| values[known[*place]] == 0.0);
+        let able_m_s2 = if nought && name == OVER_GROUND { MOST_OF_NOUGHT_M_S2 } else { MOST_M_S2 };
+        let most = (able_m_s2 * passed_s).max(STEPS * usual).max(least_m_s);
         Some(step(place)).filter(|step| step.abs() > most)
     };
     let mut all = Vec::new();
@@ -141,6 +146,21 @@ mod tests {
         assert_eq!(found(|_, speed| if speed < 1.4 { 0.0 } else { speed }), [], "a sensor that counts teeth");
         let coarse = |_: usize, speed: f64| (speed / 0.28).round() * 0.28;
         assert_eq!(found(coarse), [], "steps of resolution");
+    }
+
+    /// 2 m/s within a fifth of a second are less than 1.5 g, and yet nobody drives off like that.
+    #[test]
+    fn nought_between_two_walking_speeds_is_a_leap_of_a_receiver_and_none_of_a_wheel() {
+        let walking = |name: &str| {
+            let mut trace = Trace::new((0..200).map(|index| 0.2 * f64::from(index)).collect()).unwrap();
+            let speed = |index: usize| {
+                if (50..54).contains(&index) { 0.0 } else { 2.0 + 0.03 * (1.3 * index as f64).sin() }
+            };
+            trace.push(name, (0..200).map(speed).collect(), Origin::Measured).unwrap();
+            leaps(&trace, name)
+        };
+        assert_eq!(walking("speed_m_s"), [(50, 53)]);
+        assert_eq!(walking("wheel_speed_m_s"), []);
     }
 
     /// Renewed once a second: 0.9 s of full brakes are one step of 7 m/s.

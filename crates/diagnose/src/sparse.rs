@@ -3,6 +3,7 @@
 //! around the vehicle, without which no run could be driven.
 
 use crate::DiagnoseError;
+use headland_recording::spacing;
 use headland_trace::{Origin, Trace};
 use std::collections::BTreeMap;
 
@@ -14,14 +15,8 @@ pub struct Sparse {
     every: Option<usize>,
 }
 
-/// Fewer values tell no rate.
-const FEWEST: usize = 20;
-/// A channel is sparse where this share of its values comes after the usual number of rows.
-const REGULAR: f64 = 0.9;
-/// What comes less often than this is no channel at a lower rate.
-const LONGEST: usize = 50;
 /// Channels that are on or off, or go around: nothing lies between.
-const SWITCHES: [&str; 4] = ["coasting", "brake", "heading_rad", "wind_direction_rad"];
+pub const SWITCHES: [&str; 4] = ["coasting", "brake", "heading_rad", "wind_direction_rad"];
 /// What surrounds the vehicle, or is done with it, and changes slowly: a run is driven by it.
 const AROUND: [&str; 14] = [
     "curvature_per_m",
@@ -94,19 +89,6 @@ pub fn filled(trace: &Trace) -> Result<Filled, DiagnoseError> {
         unknown.clear();
     }
     Ok(Filled { trace: made, sparse: found, unknown })
-}
-
-/// After how many rows a channel regularly has its next value; none where that is every row, or not regular.
-fn spacing(known: &[usize]) -> Option<usize> {
-    let steps: Vec<usize> = known.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if steps.len() < FEWEST {
-        return None;
-    }
-    let mut sorted = steps.clone();
-    sorted.sort_unstable();
-    let usual = sorted[sorted.len() / 2];
-    let regular = steps.iter().filter(|step| step.abs_diff(usual) <= usize::from(usual > 2)).count();
-    ((2..=LONGEST).contains(&usual) && regular as f64 >= REGULAR * steps.len() as f64).then_some(usual)
 }
 
 /// Values between those that are known where these lie near each other, and beyond the first and the last.

@@ -10,6 +10,7 @@ use crate::laid::lay;
 use crate::leaps::{leaps, without};
 use crate::sensors::with_channel;
 use crate::sparse::{self, Sparse, filled};
+use crate::thinned::thinned;
 use crate::way::{Scale, scale};
 use headland_calibrate::study::StudyError;
 use headland_recording::{RecordedRun, Recording};
@@ -35,6 +36,8 @@ pub struct Prepared {
     pub leaps: Vec<Vec<(usize, usize)>>,
     /// What the way says of the scale of the speed over ground; the runs are corrected where it is wrong.
     pub scale: Option<Scale>,
+    /// Times of the rows of their logs [s], which may be more than those in which the speed is new.
+    pub logged_s: Vec<Vec<f64>>,
     /// Whether curvature was made of the turns that the runs show.
     pub curved: bool,
     /// What was decided, for people.
@@ -55,6 +58,7 @@ pub fn prepared(recording: &Recording, wrong: bool, straight: bool) -> Result<Pr
         unknown: Vec::new(),
         leaps: Vec::new(),
         scale: None,
+        logged_s: Vec::new(),
         curved: !curved.is_empty(),
         notes: curved::told(&curved),
     };
@@ -63,8 +67,13 @@ pub fn prepared(recording: &Recording, wrong: bool, straight: bool) -> Result<Pr
     let mut sparse: Vec<Sparse> = Vec::new();
     let (mut runs, mut unknown): (Vec<RecordedRun>, Vec<Vec<bool>>) = Default::default();
     let mut leapt: Vec<Vec<(usize, usize)>> = Vec::new();
+    let mut rare: Vec<String> = Vec::new();
     for run in &recording.runs {
-        let (trace, own) = settled(&run.trace)?;
+        let thin = thinned(&run.trace, speed(&run.trace))?;
+        if thin.is_some() {
+            rare.push(run.id.clone());
+        }
+        let (trace, own) = settled(thin.as_ref().unwrap_or(&run.trace))?;
         let made = filled(&trace)?;
         sparse.extend(made.sparse);
         unknown.push(made.unknown);
@@ -77,7 +86,8 @@ pub fn prepared(recording: &Recording, wrong: bool, straight: bool) -> Result<Pr
             run.trace = with_speed(&run.trace, |speed| speed / (1.0 + scale.value))?;
         }
     }
-    for (run, (unknown, leapt)) in runs.iter().zip(unknown.into_iter().zip(leapt)) {
+    let logged = recording.runs.iter().map(|run| run.trace.time_s().to_vec());
+    for ((run, logged_s), (unknown, leapt)) in runs.iter().zip(logged).zip(unknown.into_iter().zip(leapt)) {
         let Some(stands_in) = standing_in(&run.trace) else {
             out.push(run.id.clone());
             continue;
@@ -91,6 +101,7 @@ pub fn prepared(recording: &Recording, wrong: bool, straight: bool) -> Result<Pr
             own.stands_in.push(Vec::new());
         }
         own.recording.runs.push(run);
+        own.logged_s.push(logged_s);
         own.unknown.push(unknown);
         own.leaps.push(leapt);
     }
@@ -100,6 +111,7 @@ pub fn prepared(recording: &Recording, wrong: bool, straight: bool) -> Result<Pr
             None => StudyError::AllHeldOut.into(),
         });
     }
+    own.notes.extend(told(&rare, "the speed is new in one row of several; only those are looked at"));
     own.notes.extend(sparse::told(&sparse));
     let leapt: Vec<String> = own
         .recording
@@ -129,12 +141,17 @@ pub fn prepared(recording: &Recording, wrong: bool, straight: bool) -> Result<Pr
 
 /// A run whose speed (that of its wheels where there is no other) has no value where no vehicle can have it, and where that is.
 fn settled(trace: &Trace) -> Result<(Trace, Vec<(usize, usize)>), DiagnoseError> {
-    let name = if trace.get(OVER_GROUND).is_some() { OVER_GROUND } else { OF_WHEELS };
+    let name = speed(trace);
     let leaps = leaps(trace, name);
     if leaps.is_empty() {
         return Ok((trace.clone(), leaps));
     }
     Ok((with_channel(trace, name, without(trace, name, &leaps))?, leaps))
+}
+
+/// The speed that moves a run: over ground, or of the wheels where there is no other.
+fn speed(trace: &Trace) -> &'static str {
+    if trace.get(OVER_GROUND).is_some() { OVER_GROUND } else { OF_WHEELS }
 }
 
 /// A run with its speed over ground changed, where it has one.

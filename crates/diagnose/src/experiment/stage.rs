@@ -91,6 +91,7 @@ impl<'a> Stage<'a> {
             no_faults: case.no_faults.clone(),
             scale: case.scale,
             late_s: case.late_s,
+            logged_s: Vec::new(),
             sensors: case.sensors.clone(),
             only: None,
             nominal: Vec::new(),

@@ -9,7 +9,7 @@ use crate::search::Found;
 use crate::{Case, DiagnoseError, System};
 use headland_trace::{Origin, Run, Trace};
 
-/// Every effect along every run, with its 95 % band where one is known.
+/// Every effect along every run, with its 95 % band where one is known, in every row of the logs.
 pub fn effects(case: &Case, proof: &Proof, bands: &[Option<Banded>]) -> Result<Vec<Run>, DiagnoseError> {
     let mut runs = Vec::new();
     for (index, drive) in case.runs.iter().enumerate() {
@@ -29,9 +29,22 @@ pub fn effects(case: &Case, proof: &Proof, bands: &[Option<Banded>]) -> Result<V
                 trace.push(format!("{name}_high"), side(1.0), Origin::Predicted)?;
             }
         }
-        runs.push(Run { id: drive.measured.id.clone(), trace });
+        runs.push(Run { id: drive.measured.id.clone(), trace: in_rows(&trace, &case.logged_s[index])? });
     }
     Ok(runs)
+}
+
+/// A trace in the rows of a log; before its first sample and behind its last one it is what it is there.
+fn in_rows(trace: &Trace, logged_s: &[f64]) -> Result<Trace, DiagnoseError> {
+    let (Some(first), Some(last)) = (trace.time_s().first(), trace.time_s().last()) else {
+        return Ok(trace.clone());
+    };
+    let mut made = Trace::new(logged_s.to_vec())?;
+    for channel in trace.channels() {
+        let at = |time: &f64| trace.at(&channel.name, time.clamp(*first, *last)).unwrap_or(f64::NAN);
+        made.push(channel.name.clone(), logged_s.iter().map(at).collect(), channel.origin)?;
+    }
+    Ok(made)
 }
 
 /// Channel, latency [s], scale, bias.

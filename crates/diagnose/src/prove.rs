@@ -383,8 +383,7 @@ fn rows(
         if system.kinds[cured.accepted.balance] != kind || cured.cause.class == Class::Artefact {
             continue;
         }
-        let mass =
-            |run: usize| case.nominal[run].effective_mass_kg.iter().find(|mass| mass.is_finite()).copied();
+        let mass = |run: usize| case.nominal[run].mass_kg.iter().find(|mass| mass.is_finite()).copied();
         let column = system.column(|own| match (own == kind, effect.unit) {
             (false, _) => vec![Vec::new(); case.runs.len()],
             // A slope is told as a force, and read by the accelerometer as one per mass, the other way round.

@@ -15,6 +15,8 @@ pub struct Said {
     pub resistance_n: Vec<f64>,
     /// Mass in inertia [kg].
     pub effective_mass_kg: Vec<f64>,
+    /// Mass that has weight: the same without what rotates [kg].
+    pub mass_kg: Vec<f64>,
     /// Slope's part of the specific force [m/s²].
     pub slope_m_s2: Vec<f64>,
     /// Force at the wheels that this model's driveline makes of a recorded torque [N]; none where the force itself was
@@ -104,6 +106,7 @@ fn say(model: &Model, run: &Recorded, kinds: &[Kind]) -> Result<Said, DiagnoseEr
         Some(_) => None,
         None => force(trace, model, &run.motion.value),
     };
+    let mass_kg = at_rest(model, &modelled, &mass);
     Ok(Said {
         force_n,
         charge: powered.get("state_of_charge").map(<[f64]>::to_vec),
@@ -111,7 +114,8 @@ fn say(model: &Model, run: &Recorded, kinds: &[Kind]) -> Result<Said, DiagnoseEr
         voltage_left_v: resistance_ohm.map_or_else(Vec::new, |ohm| residual_v(run, ohm)),
         resistance_ohm,
         resistance_n,
-        slope_m_s2: slope(model, &modelled, &mass),
+        slope_m_s2: slope(model, &modelled, &mass_kg),
+        mass_kg,
         wheel_speed_m_s: wheel_speed_m_s.unwrap_or_else(|| get("wheel_speed_m_s")),
         battery_w,
         fuel_kg_s: powered.get("fuel_rate_kg_s").map(<[f64]>::to_vec),
@@ -167,6 +171,17 @@ fn slope(model: &Model, modelled: &Trace, mass_kg: &[f64]) -> Vec<f64> {
         }
     }
     slope
+}
+
+/// The mass in inertia without what the vehicle, its driveline and effects add to it by rotating [kg].
+fn at_rest(model: &Model, modelled: &Trace, effective_mass_kg: &[f64]) -> Vec<f64> {
+    let value = |name: &str, index: usize| modelled.get(name).map_or(0.0, |values| values[index]);
+    let of = |(index, effective_kg): (usize, &f64)| {
+        let driveline_kg = model.driveline.rotating_mass_kg(value("coasting", index) >= 0.5);
+        let rotating_kg = model.vehicle.rotating_mass_kg + driveline_kg + value("rotating_inertia_kg", index);
+        effective_kg - rotating_kg
+    };
+    effective_mass_kg.iter().enumerate().map(of).collect()
 }
 
 /// Every recorded circumstance, whatever the scenario's replay is told.

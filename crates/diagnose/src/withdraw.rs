@@ -255,10 +255,12 @@ fn without_nothing(
     let mut lesser: Option<Proven> = None;
     'asked: loop {
         let own = lesser.as_ref().unwrap_or(best);
-        // Beside a wind, which no sum of columns draws as it blows, a cause may patch what they lack of it.
+        // Beside a wind, which no sum of columns draws as it blows, a cause may patch what they lack of it in the motion.
         let windy = own.refined.causes.iter().any(|cured| is_whole(&cured.cause));
-        let doubtful =
-            |cured: &&Cured| is_nothing(cured) || windy && !is_whole(&cured.cause) && is_claim(cured);
+        let of_motion = |cured: &Cured| system.kinds[cured.accepted.balance] == Kind::Motion;
+        let doubtful = |cured: &&Cured| {
+            is_nothing(cured) || windy && of_motion(cured) && !is_whole(&cured.cause) && is_claim(cured)
+        };
         let mut idle: Vec<&Cured> = own.refined.causes.iter().filter(doubtful).collect();
         idle.sort_by(|one, other| one.accepted.gain.total_cmp(&other.accepted.gain));
         for cured in idle {

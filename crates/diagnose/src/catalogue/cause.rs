@@ -277,6 +277,9 @@ impl Cause {
             "variator_loss" => {
                 format!("variator_loss(loss: {:?}, node_speeds_m_s: {:?})", values[0], &values[1..])
             }
+            "auxiliary_power" if self.window().is_some() => {
+                format!("auxiliary_power(times_s: {:?}, powers_w: {:?})", &values[1..], &values[..1])
+            }
             "shift_transient" => format!(
                 "shift_transient(force_n: {:?}, width_m_s: {:?}, speeds_m_s: {:?})",
                 values[0],

@@ -9,7 +9,7 @@ mod term;
 
 pub use cause::{Cause, Class, Form};
 pub use law_text::{CHANNELS, LawText};
-pub use sensors::{MOST_SCALE, MOST_SPEED_SCALE};
+pub use sensors::{ARTEFACTS, MOST_SCALE, MOST_SPEED_SCALE};
 pub use term::Term;
 
 use crate::balance::Kind;
@@ -19,7 +19,7 @@ use sensors::sensors;
 use term::{linear, positive, shape};
 
 /// What the vehicle and its runs are like, for scales and grids.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Around {
     /// Mass [kg].
     pub mass_kg: f64,
@@ -229,13 +229,19 @@ fn side_slope(weight_n: f64) -> Cause {
 
 /// So many of some speeds, in all ways to choose them.
 fn chosen(speeds: &[f64], count: usize) -> Vec<Vec<f64>> {
-    match count {
-        1 => speeds.iter().map(|speed| vec![*speed]).collect(),
-        _ => (0..speeds.len())
-            .flat_map(|one| (one + 1..speeds.len()).map(move |other| vec![speeds[one], speeds[other]]))
-            .collect(),
+    if count == 0 {
+        return vec![Vec::new()];
     }
+    let first = |place: usize| {
+        let others = chosen(&speeds[place + 1..], count - 1).into_iter();
+        others.map(move |others| std::iter::once(speeds[place]).chain(others).collect())
+    };
+    (0..speeds.len()).flat_map(first).collect()
 }
+
+/// Mechanical points of a variator with as many ranges, and changes of range that are told apart.
+const MOST_MECHANICAL_POINTS: usize = 2;
+const MOST_SHIFTS: usize = 2;
 
 /// Losses between so many mechanical points.
 fn variator_loss(around: &Around, count: usize) -> Cause {
@@ -555,9 +561,9 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             "a loss in the driveline in proportion to its load",
             "drive at the same speed with two loads",
         ));
-        for count in if around.one_ratio { 0..0 } else { 1..3 } {
-            all.push(variator_loss(around, count));
-            all.push(shift_transient(around, weight, count));
+        if !around.one_ratio {
+            all.extend((1..=MOST_MECHANICAL_POINTS).map(|count| variator_loss(around, count)));
+            all.extend((1..=MOST_SHIFTS).map(|count| shift_transient(around, weight, count)));
         }
     }
     if around.temperatures_k > 3.0 {

@@ -1,9 +1,12 @@
 //! What takes power and makes no force.
 
 use super::cause::{Cause, Form, cause};
-use super::term::{linear, positive};
-use super::{Around, fading};
+use super::term::{linear, positive, shape};
+use super::{Around, fading, fading_s, windows};
 use crate::balance::Kind;
+
+/// What is switched at the same time in every run belongs to a plan of the runs, which long ones do not have [s].
+const SHORT_RUN_S: f64 = 600.0;
 
 /// Adds what the drive of this vehicle could be missing.
 pub fn powers(all: &mut Vec<Cause>, around: &Around) {
@@ -28,6 +31,20 @@ pub fn powers(all: &mut Vec<Cause>, around: &Around) {
         )
         .over(Form::OverTime),
     );
+    if around.duration_s <= SHORT_RUN_S {
+        all.push(
+            cause(
+                "auxiliary_power",
+                &[Kind::Battery, Kind::Fuel],
+                vec![positive("power_w", "W", 1500.0), shape("from_s", "s"), shape("to_s", "s")],
+                "P = P₀ between two times",
+                &["time_s"],
+                "a consumer that is on for a while in each run",
+                "log the current of heater, fan and hydraulics",
+            )
+            .shaped(windows(around.duration_s)),
+        );
+    }
     all.push(cause(
         "battery_resistance",
         &[Kind::Voltage],
@@ -57,12 +74,54 @@ pub fn powers(all: &mut Vec<Cause>, around: &Around) {
             words,
             "repeat the cycle with the engine warm",
         )
-        .shaped([60.0, 150.0, 400.0, 900.0].iter().map(|tau| vec![*tau]).collect())
+        .shaped(cooling_s(around))
     };
     all.push(cold("an engine that starts cold"));
     let once = around.beginnings.iter();
     all.extend(once.map(|run| cold("an engine that starts cold in one of the runs").in_run(*run)));
     if !around.beginnings.is_empty() {
         all.push(cold("an engine that starts as cold as it is in each run").by_run());
+    }
+}
+
+/// Time constants that an engine warms up with, as far as runs of this length tell them.
+fn cooling_s(around: &Around) -> Vec<Vec<f64>> {
+    let (fastest_s, slowest_s) = fading_s(around);
+    let able = |tau: &f64| (fastest_s..=slowest_s).contains(tau);
+    let all: Vec<Vec<f64>> =
+        [60.0, 150.0, 400.0, 900.0].into_iter().filter(able).map(|tau| vec![tau]).collect();
+    if all.is_empty() { vec![vec![slowest_s]] } else { all }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(duration_s: f64, id: &str) -> Vec<Cause> {
+        let mut all = Vec::new();
+        powers(&mut all, &Around { duration_s, ..Around::default() });
+        all.into_iter().filter(|cause| cause.id == id).collect()
+    }
+
+    #[test]
+    fn a_consumer_between_two_times_is_written_with_them_and_only_where_runs_are_short() {
+        let windows = |duration_s: f64| -> Vec<Cause> {
+            of(duration_s, "auxiliary_power").into_iter().filter(|cause| cause.window().is_some()).collect()
+        };
+        let short = windows(80.0);
+        assert_eq!(short.len(), 1);
+        assert_eq!(
+            short[0].written(&[1500.0, 10.0, 30.0]),
+            "auxiliary_power(times_s: [10.0, 30.0], powers_w: [1500.0])"
+        );
+        assert!(short[0].shapes.contains(&vec![10.0, 30.0]) && windows(7200.0).is_empty());
+    }
+
+    #[test]
+    fn an_engine_warms_up_no_slower_than_runs_can_tell() {
+        for duration_s in [10.0, 40.0, 1500.0] {
+            let cold = &of(duration_s, "cold_start")[0];
+            assert!(!cold.shapes.is_empty() && cold.shapes.iter().all(|shape| cold.possible(shape)));
+        }
     }
 }

@@ -5,6 +5,19 @@ use super::cause::{Cause, cause};
 use super::term::{Term, linear, positive};
 use crate::balance::Kind;
 
+/// Every fault of a sensor that a diagnosis knows, by a model or by the channel itself.
+pub const ARTEFACTS: [&str; 9] = [
+    "latency",
+    "speed_scale",
+    "force_scale",
+    "accelerometer_bias",
+    "accelerometer_tilt",
+    "clock_drift",
+    "quantisation",
+    "dropout",
+    "stuck_channel",
+];
+
 /// Clocks that run apart by more than this share of the time are broken.
 const MOST_DRIFT: f64 = 0.03;
 

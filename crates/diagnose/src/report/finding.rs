@@ -2,7 +2,7 @@
 
 use super::{FindingKind, FindingReport, Fit, Interval, ParameterReport, RivalReport, Verdict};
 use crate::balance::{Kind, System};
-use crate::catalogue::{Cause, Class, Form};
+use crate::catalogue::{ARTEFACTS, Cause, Class, Form};
 use crate::events::Event;
 use crate::faults::Fault;
 use crate::locate::stretches;
@@ -125,12 +125,19 @@ impl FindingReport {
         let fault = |id: &str| ["accelerometer_bias", "accelerometer_tilt"].contains(&id);
         self.indistinguishable_from.iter().any(|rival| !(fault(&self.id) && fault(&rival.id)))
     }
+
+    /// Whether it is a sensor's fault that may as well be physics.
+    fn may_be_physics(&self) -> bool {
+        let physics = |rival: &RivalReport| !ARTEFACTS.contains(&rival.id.as_str());
+        self.kind == FindingKind::Artefact && self.indistinguishable_from.iter().any(physics)
+    }
 }
 
 /// What a diagnosis says in a word. Beside what is certain, one cause in doubt leaves open what is missing; it takes nothing
 /// from a sensor's fault. Where far more than noise is left, something is missing all the same: no cause is claimed then, or
 /// what is claimed may stand in for it, unless it is `timed` and no run can show it of another. A free parameter that ends so
-/// many standard deviations (`strain`) from what was known of it stands in for something as well. What makes the error grow in
+/// many standard deviations (`strain`) from what was known of it stands in for something as well. A fault that may as well be
+/// physics leaves open whether anything is missing. What makes the error grow in
 /// runs that it never saw is not certain either, whatever it is.
 pub fn verdict(findings: &[FindingReport], fit: &Fit, timed: bool, strain: f64) -> Verdict {
     /// An error of so many times the noise is no matter of how well the noise is known.
@@ -151,6 +158,7 @@ pub fn verdict(findings: &[FindingReport], fit: &Fit, timed: bool, strain: f64) 
         Verdict::Unlisted
     } else if first.is_doubtful()
         || doubtful
+        || findings.iter().any(FindingReport::may_be_physics)
         || !any(FindingKind::Artefact) && findings.iter().any(FindingReport::is_doubtful)
     {
         Verdict::CannotTell
@@ -425,6 +433,9 @@ mod tests {
         assert_eq!(verdict(&[fault()]), Verdict::SensorArtefact);
         assert_eq!(verdict(&[fault(), doubtful()]), Verdict::Both);
         assert_eq!(verdict(&[doubtful(), fault()]), Verdict::CannotTell);
+        let scale = |rival| finding(Artefact, "force_scale", Some(rival));
+        assert_eq!(verdict(&[sure(), scale("mass")]), Verdict::CannotTell);
+        assert_eq!(verdict(&[sure(), scale("speed_scale")]), Verdict::Both);
         assert_eq!(verdict(&[finding(FindingKind::Unlisted, "unlisted", None), sure()]), Verdict::Unlisted);
         assert_eq!(
             verdict(&[finding(FindingKind::Unlisted, "unlisted", Some("grade"))]),

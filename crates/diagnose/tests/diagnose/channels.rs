@@ -5,6 +5,7 @@ use headland_calibrate::statistics::Draws;
 use headland_diagnose::{Diagnosed, Options};
 use headland_recording::{Recording, Sensor};
 use headland_trace::Origin;
+use headland_units::constants::STANDARD_GRAVITY_M_S2;
 
 /// The five drives with these channels, each sample changed as is said: name, sample, a draw of noise.
 fn recorded(effects: &str, channels: &[&str], sensor: impl Fn(&str, f64, f64) -> f64) -> Recording {
@@ -168,4 +169,77 @@ fn a_straight_lane_has_no_curvature_however_noisy_its_heading_is() {
     let found = found(&recording, &Options::default()).unwrap();
     assert!(!noted(&found, "curvature_per_m"), "{:?}", found.diagnosis.notes);
     assert!(!named(&found, "cornering_drag"), "{}", found.diagnosis.answer);
+}
+
+/// A receiver of 5 Hz in a log of 20 Hz, whose cells are empty in between or repeat its last value.
+fn renewed_rarely(recording: &Recording, held: bool) -> Recording {
+    const EVERY: usize = 4;
+    let mut recording = recording.clone();
+    for run in &mut recording.runs {
+        for name in ["speed_m_s", "position_m", "heading_rad"] {
+            let values = run.trace.remove(name).unwrap().values;
+            let rare = |row: usize| {
+                if held || row.is_multiple_of(EVERY) { values[row - row % EVERY] } else { f64::NAN }
+            };
+            run.trace.push(name, (0..values.len()).map(rare).collect(), Origin::Measured).unwrap();
+        }
+    }
+    recording
+}
+
+#[test]
+fn a_speed_that_is_new_in_one_row_of_several_tells_as_much_as_if_it_were_logged_alone() {
+    let hidden = super::recorded(0.07, "aerodynamic_drag(extra_area_m2: 6.0)");
+    for (held, recording) in [(true, &hidden), (false, &hidden)] {
+        let found = found(&renewed_rarely(recording, held), &Options::default()).unwrap();
+        assert!(named(&found, "aerodynamic_drag"), "{}", found.diagnosis.answer);
+        assert!(noted(&found, "the speed is new in one row of several"), "{:?}", found.diagnosis.notes);
+        // An effect is told in every row of the log.
+        assert!(
+            found.effects.iter().zip(&recording.runs).all(|(one, run)| one.trace.len() == run.trace.len())
+        );
+        let drag = found.effects[0].trace.get("aerodynamic_drag_n");
+        assert!(drag.is_none_or(|drag| drag.iter().all(|force| force.is_finite())));
+    }
+    let nothing = found(&renewed_rarely(&super::recorded(0.07, ""), true), &Options::default()).unwrap();
+    assert!(nothing.diagnosis.findings.is_empty(), "{}", nothing.diagnosis.answer);
+}
+
+/// A fan that a plan of the runs switches on and off is the listed consumer, whatever formula could draw it.
+#[test]
+fn a_consumer_that_is_on_for_a_while_in_each_run_is_told_as_that() {
+    let channels = ["speed_m_s", "position_m", "motor_torque_n_m", "battery_voltage_v", "battery_current_a"];
+    let noisy = |name: &str, value: f64, noise: f64| match name {
+        "speed_m_s" => value + 0.01 * noise,
+        "battery_current_a" => value + 0.5 * noise,
+        _ => value,
+    };
+    let hidden = "auxiliary_power(times_s: [7.3, 21.4], powers_w: [6200.0])";
+    let found = found(&recorded(hidden, &channels, noisy), &Options::default()).unwrap();
+    let ids: Vec<&str> = found.diagnosis.findings.iter().map(|finding| finding.id.as_str()).collect();
+    assert_eq!(ids, ["auxiliary_power"], "{}", found.diagnosis.answer);
+}
+
+/// What rotates has no weight: of 800 kg of it in 13 t an accelerometer would tell a sixteenth of a slope wrongly.
+#[test]
+fn a_slope_has_the_same_size_in_the_accelerometer_and_in_the_forces() {
+    const GRADE: f64 = 0.012;
+    let channels =
+        ["speed_m_s", "position_m", "heading_rad", "tractive_force_n", "coasting", "acceleration_m_s2"];
+    let noisy = |name: &str, value: f64, noise: f64| match name {
+        "speed_m_s" => value + 0.01 * noise,
+        "acceleration_m_s2" => value + STANDARD_GRAVITY_M_S2 * GRADE.atan().sin() + 0.02 * noise,
+        _ => value,
+    };
+    let mut recording = recorded(&format!("grade_constant(grade: {GRADE})"), &channels, noisy);
+    for run in &mut recording.runs {
+        let felt = run.trace.remove("acceleration_m_s2").unwrap();
+        run.trace.push("specific_force_m_s2", felt.values, Origin::Measured).unwrap();
+    }
+    let found = found(&recording, &Options::default()).unwrap();
+    assert_eq!(found.diagnosis.findings.len(), 1, "{}", found.diagnosis.answer);
+    let finding = &found.diagnosis.findings[0];
+    assert_eq!(finding.id, "grade_constant", "{}", found.diagnosis.answer);
+    let [low, high] = finding.parameters[0].ci95;
+    assert!(low < GRADE && GRADE < high && high - low < 0.05 * GRADE, "{:?}", finding.parameters);
 }

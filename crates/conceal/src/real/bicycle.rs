@@ -26,10 +26,11 @@ pub fn rows(options: &Options) -> Result<Vec<Row>, ConcealError> {
     let area = |run: &str| -> Option<f64> {
         /// Density that the scenario states [kg/m³].
         const DENSITY_KG_M3: f64 = 1.21;
-        let rounds =
-            (1..=3).filter_map(|round| said.series(&format!("{run}.{round}"), &["aerodynamic_drag_n"]));
+        let legs =
+            ["out", "back"].into_iter().flat_map(|way| (1..=3).map(move |leg| format!("{run}_{way}.{leg}")));
+        let told = legs.filter_map(|leg| said.series(&leg, &["aerodynamic_drag_n"]));
         let (time_s, force): (Vec<f64>, Vec<f64>) =
-            rounds.flat_map(|(time_s, force)| time_s.into_iter().zip(force)).unzip();
+            told.flat_map(|(time_s, force)| time_s.into_iter().zip(force)).unzip();
         if time_s.is_empty() {
             return None;
         }

@@ -65,6 +65,7 @@ mod so_far;
 mod sparse;
 mod spells;
 mod split;
+mod spreading;
 mod standin;
 mod state;
 mod straying;

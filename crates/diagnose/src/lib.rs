@@ -23,6 +23,7 @@ mod contest;
 mod contradiction;
 mod crossval;
 mod curved;
+mod elsewhere;
 mod engine_off;
 mod error;
 mod events;

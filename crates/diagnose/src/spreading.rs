@@ -16,6 +16,10 @@ use crate::state::{Chosen, Part, Stand, State};
 /// A function that is correlated for so long stays the same throughout a run [s].
 const BY_RUN_S: f64 = 1e7;
 
+/// Sizes that are tried, as shares of the usual one, beside that itself. What is smaller than the least is nothing that anybody would
+/// name, but what a sensor or the blocks of the rows leave.
+const SIZES: [f64; 4] = [0.1, 0.3, 3.0, 10.0];
+
 /// A function beside the other causes of a set, ready to be asked how likely it makes the recordings.
 struct Spreading<'s, 'a> {
     state: &'s State<'a>,
@@ -86,7 +90,6 @@ impl State<'_> {
         noises: &Noises,
         knots_per_length: f64,
     ) -> Option<Spread> {
-        const SIZES: [f64; 4] = [0.1, 0.3, 3.0, 10.0];
         let cause = self.cause(&part.trial);
         let spreading = Spreading::of(self, part, &stand.parts, noises)?;
         let usual = cause.terms[0].scale;
@@ -104,7 +107,7 @@ impl State<'_> {
     }
 
     /// A set whose functions of the path are spread more finely than a grid has them, as suits them best beside all the others;
-    /// none where nothing is better.
+    /// none where nothing is better. Functions that share their rows with others stay as they are.
     pub fn spread_finer(&self, stand: &Stand) -> Option<Stand> {
         /// A growth of ln p below this is none.
         const LEAST: f64 = 0.5;
@@ -117,9 +120,15 @@ impl State<'_> {
             let mut others = parts.clone();
             let part = others.remove(place);
             let Some(spreading) = Spreading::of(self, &part, &others, &stand.noises) else { continue };
+            // Side by side with another function it has no band, and every step takes long.
+            if spreading.without.is_none() {
+                continue;
+            }
             let longest = spreading.profile.longest();
+            let shortest = lengths(cause, longest).into_iter().fold(longest, f64::min);
+            let [least, .., most] = SIZES.map(|share| share * cause.terms[0].scale);
             let evidence = |length: f64, size: f64| {
-                (length < longest)
+                ((shortest..longest).contains(&length) && (least..=most).contains(&size))
                     .then(|| spreading.evidence(&part, &Spread { length, size, ..spread.clone() }))
                     .flatten()
             };

@@ -107,10 +107,14 @@ impl State<'_> {
     }
 
     /// A set whose functions of the path are spread more finely than a grid has them, as suits them best beside all the others;
-    /// none where nothing is better. Functions that share their rows with others stay as they are.
+    /// none where nothing is better, or where runs share a path. Functions that share their rows with others stay as they are.
     pub fn spread_finer(&self, stand: &Stand) -> Option<Stand> {
         /// A growth of ln p below this is none.
         const LEAST: f64 = 0.5;
+        // On a path that runs share each tells the others what is of the path.
+        if self.paths_shared() {
+            return None;
+        }
         let mut parts = stand.parts.clone();
         let mut moved = false;
         for place in 0..parts.len() {

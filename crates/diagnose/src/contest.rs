@@ -2,13 +2,13 @@
 
 use crate::balance::Kind;
 use crate::catalogue::{Cause, Form};
-use crate::gram::{Reduced, Whitened};
+use crate::gram::Reduced;
 use crate::jumps::Jumps;
 use crate::look::MANY_ROWS;
 use crate::noise::Noises;
 use crate::profile::{COARSE, Spread};
 use crate::search::rank;
-use crate::state::{Chosen, Part, Stand, State};
+use crate::state::{Part, Stand, State};
 use crate::trial::Trial;
 use rayon::prelude::*;
 
@@ -26,8 +26,6 @@ impl Contest {
     }
 }
 
-/// A function that is correlated for so long stays the same throughout a run [s].
-const BY_RUN_S: f64 = 1e7;
 /// The cause that is switched.
 const SWITCHED: &str = "auxiliary_power";
 /// Trials whose noise is estimated anew.
@@ -159,67 +157,37 @@ impl State<'_> {
         switched.map(part).collect()
     }
 
+    /// The sets of a contest where functions of the path stand beside the new cause: they may have taken it up, so they are spread
+    /// anew beside those causes that bring most, and the best comes first again. The functions of the set before have to be
+    /// spread as suits them best already.
+    pub fn spread_anew(&self, stand: &Stand, mut judged: Vec<Contest>) -> Vec<Contest> {
+        /// So many of them.
+        const MOST: usize = 3;
+        let of_path = |part: &Part| {
+            let steady = part.spread.as_ref().is_some_and(|spread| spread.jumps.is_none());
+            steady && self.cause(&part.trial).form == Form::OverPosition
+        };
+        if !stand.parts.iter().any(of_path) {
+            return judged;
+        }
+        let brings = |one: &Contest| {
+            one.stand.score > stand.score && one.stand.parts.last().is_some_and(|part| part.spread.is_none())
+        };
+        let promising: Vec<usize> =
+            (0..judged.len()).filter(|place| brings(&judged[*place])).take(MOST).collect();
+        let anew = |place: &usize| Some((*place, self.spread_finer(&judged[*place].stand)?));
+        let anew: Vec<(usize, Stand)> = promising.par_iter().filter_map(anew).collect();
+        for (place, finer) in anew {
+            if !self.impossible(&finer.parts, &finer.estimate) {
+                judged[place] = Contest { stand: finer };
+            }
+        }
+        judged.sort_by(|one, other| rank(&other.stand, self).total_cmp(&rank(&one.stand, self)));
+        judged
+    }
+
     /// The noise that neighbouring rows show of what a set leaves.
     pub fn quiet(&self, stand: &Stand) -> Noises {
         self.system.quiet(&stand.left, self.fit, &stand.noises)
-    }
-
-    /// Length and size that make the recordings most likely: the length at the usual size first, then the size.
-    pub fn best_spread(
-        &self,
-        part: &Part,
-        stand: &Stand,
-        noises: &Noises,
-        knots_per_length: f64,
-    ) -> Option<Spread> {
-        const SIZES: [f64; 4] = [0.1, 0.3, 3.0, 10.0];
-        /// Loads that a run takes up and gives off, at most.
-        const MOST_LOADS: f64 = 30.0;
-        let cause = self.cause(&part.trial);
-        let mut parts = stand.parts.clone();
-        parts.push(part.clone());
-        let Chosen { columns, sd, places, .. } = self.chosen(&parts);
-        let chunks = &self.system.chunks;
-        let whitened = Whitened::new(chunks, &self.system.residual, &columns, noises)?;
-        let profile = self.profile(&part.trial);
-        let others = self.profiles(&stand.parts);
-        // What shares no rows with it is eliminated once.
-        let apart = self.apart(&part.trial, &stand.parts);
-        let without = if apart { Some(self.without_functions(&whitened, &others, self.fit)?) } else { None };
-        let evidence = |spread: &Spread| {
-            let reduced = if let Some(without) = &without {
-                let mut reduced = without.clone();
-                profile.take(&whitened, chunks, self.fit, spread, &mut reduced)?;
-                reduced
-            } else {
-                let mut profiles = self.profiles(&stand.parts);
-                profiles.push(Some((self.profile(&part.trial), spread.clone())));
-                self.without_functions(&whitened, &profiles, self.fit)?
-            };
-            Some(reduced.estimate(&places, &sd)?.log_evidence)
-        };
-        let lengths: &[f64] = match cause.form {
-            _ if cause.by_run => &[BY_RUN_S],
-            Form::OverPosition => &[5.0, 15.0, 50.0, 150.0, 450.0],
-            // A tank fills and empties; what comes and goes faster is a force.
-            _ if cause.id == "payload_change" => &[20.0, 80.0, 320.0],
-            _ => &[5.0, 20.0, 80.0, 320.0],
-        };
-        let usual = cause.terms[0].scale;
-        let best_of = |spreads: Vec<Spread>| {
-            let judged = spreads.into_iter().filter_map(|spread| Some((evidence(&spread)?, spread)));
-            judged.max_by(|one, other| one.0.total_cmp(&other.0))
-        };
-        let longest = profile.longest();
-        // Nor does it change its mind all the time: a load that comes and goes within a small part of the way is none.
-        let least = if cause.id == "payload_change" { longest / MOST_LOADS } else { 0.0 };
-        let able = |length: &f64| cause.by_run || (least..longest).contains(length);
-        let possible = lengths.iter().copied().filter(able);
-        let (gain, spread) = best_of(
-            possible.map(|length| Spread { length, size: usual, knots_per_length, jumps: None }).collect(),
-        )?;
-        let sizes = SIZES.iter().map(|share| Spread { size: share * usual, ..spread.clone() }).collect();
-        let (other_gain, other) = best_of(sizes)?;
-        Some(if other_gain > gain { other } else { spread })
     }
 }

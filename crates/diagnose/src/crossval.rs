@@ -2,6 +2,9 @@
 //! left out is predicted with a cause and without. What the free parameters have to bend for it counts with their priors:
 //! a cause that only relieves a parameter need not show in the prediction.
 //!
+//! A road that no other run drove has slopes that the others say nothing of: along it they are as unknown as they usually are, and
+//! what is left of the run is judged with that.
+//!
 //! Source: Stone, *J. R. Stat. Soc. B* 36 (1974) 111, here over whole runs.
 
 use crate::catalogue::Form;
@@ -18,11 +21,12 @@ impl State<'_> {
     /// By how much ln p of runs that were left out grows with each cause of a set; none with a single run.
     pub fn predicted(&self, stand: &Stand) -> Option<Vec<f64>> {
         let unseen = self.unseen(&stand.parts);
-        let full = self.deviance(&stand.parts, stand, &unseen)?;
+        let alone = self.alone(&stand.parts);
+        let full = self.deviance(&stand.parts, stand, &unseen, &alone)?;
         let without = |place: usize| {
             let mut parts = stand.parts.clone();
             parts.remove(place);
-            self.deviance(&parts, stand, &unseen)
+            self.deviance(&parts, stand, &unseen, &alone)
         };
         (0..stand.parts.len()).map(|place| Some(0.5 * (without(place)? - full))).collect()
     }
@@ -30,7 +34,7 @@ impl State<'_> {
     /// What causes leave of every balance in runs that were each predicted by the others, as mean squares over rows of the
     /// fitted runs; none with a single run.
     pub fn foretold(&self, parts: &[Part], noises: &Noises) -> Option<Vec<f64>> {
-        let told = self.told_by_others(parts, noises)?;
+        let told = self.told_by_others(parts, noises, &vec![false; self.fit.len()])?;
         let balances = self.system.kinds.len();
         let (mut sums, mut counts) = (vec![0.0; balances], vec![0usize; balances]);
         for (index, left) in told.iter().flat_map(|one| &one.left) {
@@ -69,12 +73,24 @@ impl State<'_> {
         self.system.chunks.par_iter().map(of_chunk).collect()
     }
 
+    /// The fitted runs whose path no other fitted run drove, where a set holds a function of the path.
+    fn alone(&self, parts: &[Part]) -> Vec<bool> {
+        let of_place =
+            |part: &Part| part.spread.is_some() && self.cause(&part.trial).form == Form::OverPosition;
+        let mapped = parts.iter().any(of_place);
+        let runs = &self.case.runs;
+        let others = |own: usize| {
+            (0..runs.len()).any(|run| run != own && self.fit[run] && runs[run].path == runs[own].path)
+        };
+        (0..runs.len()).map(|run| mapped && self.fit[run] && !others(run)).collect()
+    }
+
     /// Sum of the squares of what is left, whitened, of runs that were each predicted by the others; rows that are `unseen`
-    /// leave nothing.
-    fn deviance(&self, parts: &[Part], stand: &Stand, unseen: &[Vec<usize>]) -> Option<f64> {
+    /// leave nothing, and runs that were `alone` what is unlikely beside functions of their own that nobody knows.
+    fn deviance(&self, parts: &[Part], stand: &Stand, unseen: &[Vec<usize>], alone: &[bool]) -> Option<f64> {
         let chunks = &self.system.chunks;
         let whiteners = stand.noises.whiteners(chunks)?;
-        let told = self.told_by_others(parts, &stand.noises)?;
+        let told = self.told_by_others(parts, &stand.noises, alone)?;
         let of_run = |one: &Told| {
             let white = |(index, left): &(usize, DVector<f64>)| {
                 let mut left = left.clone();
@@ -84,13 +100,14 @@ impl State<'_> {
                 whiteners.white(*index, &chunks[*index], &left).norm_squared()
             };
             // What is known of the free parameters is known once, not once for every run.
-            one.bent / told.len() as f64 + one.left.iter().map(white).sum::<f64>()
+            one.bent / told.len() as f64
+                + one.unlikely.unwrap_or_else(|| one.left.iter().map(white).sum::<f64>())
         };
         Some(told.iter().map(of_run).sum())
     }
 
-    /// Every fitted run as the others predict it with some causes.
-    fn told_by_others(&self, parts: &[Part], noises: &Noises) -> Option<Vec<Told>> {
+    /// Every fitted run as the others predict it with some causes; those that are `alone` beside functions of their own.
+    fn told_by_others(&self, parts: &[Part], noises: &Noises, alone: &[bool]) -> Option<Vec<Told>> {
         let fitted: Vec<usize> = (0..self.fit.len()).filter(|run| self.fit[*run]).collect();
         if fitted.len() < 2 {
             return None;
@@ -119,7 +136,15 @@ impl State<'_> {
                 }
                 (index, left)
             };
+            let mut own = vec![false; self.fit.len()];
+            own[*out] = true;
+            let unlikely = if alone[*out] {
+                Some(self.without_functions(&whitened, &profiles, &own)?.deviance_at(&beta))
+            } else {
+                None
+            };
             Some(Told {
+                unlikely,
                 bent: beta
                     .iter()
                     .zip(&sd)
@@ -137,6 +162,8 @@ impl State<'_> {
 struct Told {
     /// Squares of how far the free parameters had to move, in standard deviations of what is known of them.
     bent: f64,
+    /// How unlikely it is beside functions of its own, −2 ln p but for what is the same of all sets; none where it is predicted as it is.
+    unlikely: Option<f64>,
     /// What is left of every chunk of it.
     left: Vec<(usize, DVector<f64>)>,
 }

@@ -153,6 +153,12 @@ impl Reduced {
         self.log_determinant += log_determinant;
     }
 
+    /// −2 ln p of the rows with these values of all columns, but for what goes with the number of rows.
+    pub fn deviance_at(&self, beta: &DVector<f64>) -> f64 {
+        let square = beta.dot(&(&self.matrix * beta));
+        self.scalar - 2.0 * beta.dot(&self.vector) + square + self.log_determinant
+    }
+
     fn chosen(&self, used: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
         let matrix =
             DMatrix::from_fn(used.len(), used.len(), |row, column| self.matrix[(used[row], used[column])]);
@@ -242,6 +248,14 @@ mod tests {
         let reduced = reduced(&[[1.0; 4], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]]);
         let r2 = reduced.squared_correlation(&[1], &[2], &[0], &[1e6, 1.0, 1.0]);
         assert!((r2 - 1.0 / 3.0).abs() < 1e-6, "{r2}");
+    }
+
+    /// Rows 1, 2, 3, 4 less twice the ones: 1 + 0 + 1 + 4.
+    #[test]
+    fn a_deviance_at_some_values_is_that_of_what_they_leave() {
+        let mut reduced = reduced(&[[1.0; 4]]);
+        (reduced.vector, reduced.scalar) = (DVector::from_element(1, 10.0), 30.0);
+        assert!((reduced.deviance_at(&DVector::from_element(1, 2.0)) - 6.0).abs() < 1e-12);
     }
 
     /// A bell between two samples is nought in every row: nothing says the same as it.

@@ -287,16 +287,17 @@ impl State<'_> {
     /// ask for any more.
     fn grown(&self, first: Stand, mut best: Stand, before: &Found) -> Option<Found> {
         let mut needed = before.needed;
+        best = self.spread_finer(&best).unwrap_or(best);
         while best.parts.len() < MOST_CAUSES {
             let reduced = self.reduced(&best.noises, &best.parts)?;
             needed = LEAST_GAIN.max(self.chance(&best, &reduced));
             let able = |one: &Contest| {
                 one.stand.score - best.score >= needed.max(PER_CAUSE) && worth(&one.stand) > worth(&best)
             };
-            let judged = self.contest(&best, &reduced, &[]).into_iter();
+            let judged = self.spread_anew(&best, self.contest(&best, &reduced, &[])).into_iter();
             let next = judged.filter(able).find(|one| self.sensible(&one.stand));
             let Some(next) = next else { break };
-            best = next.stand;
+            best = self.spread_finer(&next.stand).unwrap_or(next.stand);
         }
         self.conclude(best, first, (before.tried.clone(), Vec::new()), needed)
     }

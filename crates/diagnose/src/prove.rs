@@ -113,7 +113,8 @@ pub fn prove(
     })
 }
 
-fn by_path(refined: &Refined) -> bool {
+/// Whether anything that was found belongs to one path or to one run.
+pub fn by_path(refined: &Refined) -> bool {
     refined.causes.iter().any(|cured| cured.function().is_some() || cured.in_single_runs())
 }
 

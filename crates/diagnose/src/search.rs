@@ -136,8 +136,9 @@ pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]
             if place == 0 {
                 needed = LEAST_GAIN.max(state.chance(stand, &reduced));
             }
-            let judged = state.contest(stand, &reduced, banned);
+            let mut judged = state.contest(stand, &reduced, banned);
             if place == 0 {
+                judged = state.spread_anew(stand, judged);
                 tried.push(Round {
                     by_chance: needed,
                     causes: judged.iter().map(|one| one.told(stand.score)).collect(),
@@ -149,6 +150,9 @@ pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]
         grown.sort_by(|one, other| other.score.total_cmp(&one.score));
         grown.dedup_by(|one, other| same(one, other));
         grown.truncate(BEAM);
+        if let Some(finer) = grown.first().and_then(|top| state.spread_finer(top)) {
+            grown[0] = finer;
+        }
         let Some(top) = grown.first() else { break };
         others.extend(grown.iter().cloned());
         if worth(top) > worth(&best) {

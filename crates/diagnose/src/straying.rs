@@ -46,7 +46,8 @@ impl State<'_> {
             let reduced = self.reduced(&best.noises, &best.parts)?;
             let needed = PER_CAUSE + LEAST_GAIN.max(self.chance(&best, &reduced));
             let able = |one: &Contest| one.stand.score - best.score >= needed && self.sensible(&one.stand);
-            let Some(next) = self.contest(&best, &reduced, &[]).into_iter().find(able) else { break };
+            let judged = self.spread_anew(&best, self.contest(&best, &reduced, &[]));
+            let Some(next) = judged.into_iter().find(able) else { break };
             best = next.stand;
         }
         Some(best)
@@ -92,6 +93,7 @@ impl State<'_> {
         };
         let all: Vec<Stand> = starts.iter().filter_map(of).collect();
         let finest = all.into_iter().max_by(|one, other| one.score.total_cmp(&other.score)).or(Some(current));
+        let finest = finest.map(|stand| self.spread_finer(&stand).unwrap_or(stand));
         finest.filter(|stand| tailed || stand.score >= best.score + LEAST_GAIN)
     }
 

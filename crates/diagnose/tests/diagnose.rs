@@ -17,6 +17,8 @@ mod engine;
 mod ground;
 #[path = "diagnose/hurt.rs"]
 mod hurt;
+#[path = "diagnose/roads.rs"]
+mod roads;
 mod setting;
 #[path = "diagnose/several.rs"]
 mod several;

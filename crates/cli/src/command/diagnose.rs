@@ -67,6 +67,9 @@ fn scenarios(
         let text = crate::fitted::with_folder(scenario, text, registry)?;
         output.text(&name, &text)?;
     }
+    if let Some(text) = &found.elsewhere {
+        output.text("scenario_elsewhere.ron", &crate::fitted::with_folder(scenario, text, registry)?)?;
+    }
     Ok(())
 }
 

@@ -320,9 +320,10 @@ fn agreement(said: &Said, trips: &[Trip], text: &mut String) -> f64 {
     median(&all)
 }
 
-/// The trip with most load, held against the car as the other trips left it.
+/// The trip with most load, held against the car as all trips left it, without the slopes and consumers of any of them.
 fn loaded(options: &Options, said: &Said, recording: &str) -> Result<Option<Said>, ConcealError> {
-    let improved = said.out.join("scenario.ron");
+    let [car, first] = ["scenario_elsewhere.ron", "scenario.ron"].map(|name| said.out.join(name));
+    let improved = if car.is_file() { car } else { first };
     if !improved.is_file() {
         return Ok(None);
     }

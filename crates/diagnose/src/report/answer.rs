@@ -5,6 +5,7 @@ use super::series::{corrections, effects, residuals};
 use super::shown::shown;
 use super::{Calibrated, Diagnosed, Diagnosis, Fit, FitRuns, Tried, Verdict, bands};
 use crate::catalogue::Form;
+use crate::elsewhere::elsewhere;
 use crate::events::Event;
 use crate::experiment::Proposals;
 use crate::faults::Fault;
@@ -101,6 +102,7 @@ pub fn report(
     Ok(Diagnosed {
         diagnosis,
         scenarios: proof.scenarios.iter().map(|(_, text)| text.clone()).collect(),
+        elsewhere: elsewhere(case, refined)?,
         effects: effects(case, proof, &bands)?,
         corrections: corrections(case, refined),
         residuals: residuals(case, system, found),
@@ -152,6 +154,7 @@ pub fn inconclusive(
     Ok(Diagnosed {
         diagnosis,
         scenarios: proof.scenarios.iter().map(|(_, text)| text.clone()).collect(),
+        elsewhere: None,
         effects: effects(case, &proof, &[])?,
         corrections: Vec::new(),
         residuals: Vec::new(),

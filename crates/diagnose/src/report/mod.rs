@@ -237,6 +237,8 @@ pub struct Diagnosed {
     pub diagnosis: Diagnosis,
     /// The improved scenario for each path: the first is `scenario.ron`.
     pub scenarios: Vec<String>,
+    /// The improved scenario for runs on another road, `scenario_elsewhere.ron`: without what belongs to one path or to one run.
+    pub elsewhere: Option<String>,
     /// Every effect along every run, for `effects.parquet`.
     pub effects: Vec<Run>,
     /// Corrections of channels for the improved `recording.ron`: channel, latency [s], scale, bias.

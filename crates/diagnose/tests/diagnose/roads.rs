@@ -1,0 +1,84 @@
+//! Many roads, each driven once: what differs from run to run beside slopes that nobody knows.
+
+use super::setting::{ELECTRIC, found_of_scenario, recording_of_scenario};
+use headland_calibrate::statistics::Draws;
+use headland_diagnose::Options;
+use headland_trace::Origin;
+
+/// A tractor that drives a kilometre and more at several speeds.
+fn drive(effects: &str) -> String {
+    let level =
+        |speed_m_s: u32| format!("Reach(speed_m_s: {speed_m_s}, acceleration_m_s2: 0.5), Hold(for_s: 40), ");
+    let cycle: String = [8, 4, 9, 5, 7].map(level).concat();
+    format!(
+        r#"(
+    about: "a tractor on a road",
+    vehicle: (
+        mass_kg: 13000, rotating_mass_kg: 800, drag_area_m2: 6.0,
+        driveline: {ELECTRIC},
+    ),
+    ground: (terrain: Flat(heading_rad: 0.0), soil: LinearSpeedLaw(coefficient: 0.03, speed_scale_m_s: "100 km/h")),
+    air: (density_kg_m3: 1.2),
+    cycle: [{cycle}],
+    effects: [{effects}],
+    free: [
+        (name: "ground.soil.coefficient", sd: 0.005, bounds: (0.005, 0.3)),
+        (name: "vehicle.mass_kg", sd: 65, bounds: (10000, 16000)),
+        (name: "vehicle.drag_area_m2", sd: 0.5, bounds: (2, 12)),
+    ],
+    runs: [(id: "r", with: {{}})],
+    simulation: (fidelity: Longitudinal, step_s: 0.05),
+)"#
+    )
+}
+
+/// Slopes of a road: knots, and a process that forgets itself within 60 m.
+fn road(number: u64) -> String {
+    const STEP_M: f64 = 20.0;
+    let mut draws = Draws::new(77, number);
+    let kept = (-STEP_M / 60.0_f64).exp();
+    let mut slope = 0.012 * draws.normal();
+    let mut next = || {
+        let here = slope;
+        slope = kept * slope + 0.012 * (1.0 - kept * kept).sqrt() * draws.normal();
+        here
+    };
+    let slopes: Vec<f64> = (0..100).map(|_| next()).collect();
+    let places: Vec<f64> = (0..100).map(|knot| STEP_M * f64::from(knot)).collect();
+    format!("grade(positions_m: {places:?}, grades: {slopes:?})")
+}
+
+/// A map of each road's slopes could take up the cold of its day: slopes that reach as far as a grid lets them are no reason to.
+#[test]
+fn a_resistance_that_rises_in_the_cold_is_told_beside_the_slopes_of_many_roads() {
+    let registry = headland_stock::registry();
+    let channels = ["speed_m_s", "position_m", "tractive_force_n"];
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "tractive_force_n" => value + 40.0 * draws.normal(),
+        _ => value,
+    };
+    let mut all = None;
+    for number in 0..12_u32 {
+        let air_c = 31.0 - 3.0 * f64::from((number * 5) % 12);
+        let cold = format!("rolling_resistance(coefficient: {:?})", 4e-4 * (20.0 - air_c));
+        let hidden = format!("{}, {cold}", road(u64::from(number)));
+        let sensor = (500 + u64::from(number), &noisy as _);
+        let mut recording = recording_of_scenario(&drive(&hidden), &registry, &channels, sensor);
+        let mut run = recording.runs.remove(0);
+        let samples = run.trace.len();
+        run.trace.push("air_temperature_c", vec![air_c; samples], Origin::Measured).unwrap();
+        (run.id, run.path, run.held_out) = (format!("day_{number}"), None, number % 4 == 3);
+        all.get_or_insert(recording).runs.push(run);
+    }
+    let found = found_of_scenario(&drive(""), &all.unwrap(), &Options::default(), &registry).unwrap();
+    let answer = &found.diagnosis.answer;
+    let cold = found.diagnosis.findings.iter().find(|one| one.id == "rolling_temperature");
+    let told = cold.unwrap_or_else(|| panic!("{answer}")).parameters.iter();
+    let per_k =
+        told.clone().find(|one| one.name == "coefficient_per_k").unwrap_or_else(|| panic!("{answer}"));
+    assert!((per_k.value / 4e-4 - 1.0).abs() < 0.3, "{per_k:?}");
+    // What goes along to another road: the tyres, and none of the slopes.
+    let elsewhere = found.elsewhere.unwrap();
+    assert!(elsewhere.contains("rolling_temperature") && !elsewhere.contains("grade("), "{elsewhere}");
+}

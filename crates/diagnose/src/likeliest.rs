@@ -156,10 +156,9 @@ mod tests {
     fn noises_side_by_side_leave_what_each_leaves_alone() {
         let noise = Noise { shape: Shape::Averaged, sensor: 1.0, process: 2.0, persistence: 0.7 };
         let all = made(noise, 3, 90);
-        let weights: Vec<DVector<f64>> =
+        let kept: Vec<DVector<f64>> =
             all.iter().map(|one| one.map(|value| 1.0 / (1.0 + value * value))).collect();
-        let (residuals, weights): (Vec<_>, Vec<_>) =
-            (all.iter().collect(), weights.iter().map(Some).collect());
+        let (residuals, weights): (Vec<_>, Vec<_>) = (all.iter().collect(), kept.iter().map(Some).collect());
         let rows = Weighted { residuals: &residuals, weights: &weights };
         let places = [
             (0.0, 0.0),
@@ -176,10 +175,10 @@ mod tests {
             let (_, found) = tried.unwrap();
             let unit = Noise { sensor: 1.0 - place.0, process: place.0, persistence: place.1, ..noise };
             let whitener = unit.whitener(90).unwrap();
-            let square = |(one, weight): (&DVector<f64>, &Option<&DVector<f64>>)| {
-                whitener.whiten(one).component_mul(weight.unwrap()).dot(&whitener.whiten(one))
+            let square = |(one, weight): (&DVector<f64>, &DVector<f64>)| {
+                whitener.whiten(one).component_mul(weight).dot(&whitener.whiten(one))
             };
-            let expected: f64 = all.iter().zip(&weights).map(square).sum::<f64>() / 270.0;
+            let expected: f64 = all.iter().zip(&kept).map(square).sum::<f64>() / 270.0;
             assert!(((found.sensor + found.process) / expected - 1.0).abs() < 1e-12, "{found:?}, {expected}");
         }
     }

@@ -51,9 +51,8 @@ fn values(time_s: &[f64], channel: &Channel, rows: &[usize]) -> Vec<f64> {
             Some(new) if fast(new) => between(time_s, own, new, row),
             // What is slower than the speed comes where it comes.
             Some(_) if empty => hat(place),
-            Some(_) => own[row],
             None if own[row].is_finite() && !is_coarse(own) => hat(place),
-            None => own[row],
+            _ => own[row],
         }
     };
     (0..rows.len()).map(of).collect()
@@ -108,7 +107,7 @@ mod tests {
     fn a_run_keeps_the_rows_in_which_its_speed_is_new_and_faster_channels_are_averaged() {
         let speed = |row: usize| (row - row % 5) as f64 * 0.01;
         let force = |row: usize| 100.0 * row as f64 + if row.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let place = |row: usize| if row % 5 == 0 { row as f64 } else { f64::NAN };
+        let place = |row: usize| if row.is_multiple_of(5) { row as f64 } else { f64::NAN };
         let slow = |row: usize| if row.is_multiple_of(50) { row as f64 } else { f64::NAN };
         let trace =
             log(speed, &[("tractive_force_n", &force), ("position_m", &place), ("air_temperature_c", &slow)]);

@@ -1,9 +1,10 @@
-//! Channels that come less often than the log has rows: loggers of different rates, joined row by row, leave cells empty.
+//! Channels that come less often than the log has rows: loggers of different rates, joined row by row, leave cells empty, or
+//! repeat a value until the next one comes, which makes it late by half the time between them.
 //! Between two values such a channel is what lies between them, and that is said. So are short gaps in what changes slowly
 //! around the vehicle, without which no run could be driven.
 
 use crate::DiagnoseError;
-use headland_recording::spacing;
+use headland_recording::{renewals, spacing};
 use headland_trace::{Origin, Trace};
 use std::collections::BTreeMap;
 
@@ -17,6 +18,8 @@ pub struct Sparse {
 
 /// Channels that are on or off, or go around: nothing lies between.
 pub const SWITCHES: [&str; 4] = ["coasting", "brake", "heading_rad", "wind_direction_rad"];
+/// Channels whose steps are told by themselves: a charge is counted in them, and a run has the rows in which its speed is new.
+const STEPS: [&str; 2] = ["speed_m_s", "state_of_charge"];
 /// What surrounds the vehicle, or is done with it, and changes slowly: a run is driven by it.
 const AROUND: [&str; 14] = [
     "curvature_per_m",
@@ -60,6 +63,16 @@ pub fn filled(trace: &Trace) -> Result<Filled, DiagnoseError> {
         let known: Vec<usize> =
             (0..channel.values.len()).filter(|row| channel.values[*row].is_finite()).collect();
         let every = spacing(&known);
+        let switch = SWITCHES.contains(&channel.name.as_str());
+        let held = every.is_none() && !switch && !STEPS.contains(&channel.name.as_str());
+        if let Some(new) = held.then(|| renewals(&channel.values)).flatten() {
+            let every = (channel.values.len() + new.len() / 2) / new.len();
+            let near = |from: usize, to: usize| to - from <= every + 1;
+            let values = between(trace.time_s(), &channel.values, &new, &near, false);
+            found.push(Sparse { channel: channel.name.clone(), every: Some(every) });
+            made.push(channel.name.clone(), values, channel.origin)?;
+            continue;
+        }
         let slow = AROUND.contains(&channel.name.as_str()) && known.len() < channel.values.len();
         if known.is_empty() || every.is_none() && !slow {
             made.push(channel.name.clone(), channel.values.clone(), channel.origin)?;
@@ -71,7 +84,6 @@ pub fn filled(trace: &Trace) -> Result<Filled, DiagnoseError> {
             Some(every) => to - from <= every + 1,
             None => time_s[to] - time_s[from] <= SHORT_S,
         };
-        let switch = SWITCHES.contains(&channel.name.as_str());
         let mut values = between(time_s, &channel.values, &known, &near, switch);
         if around {
             // What is left are gaps that are too long: a run has to be driven by something there.
@@ -131,7 +143,7 @@ pub fn told(sparse: &[Sparse]) -> Vec<String> {
         let runs = if count == 1 { "one run".to_owned() } else { format!("{count} runs") };
         match every {
             Some(every) => format!(
-                "`{channel}` has a value in one row of {every} in {runs}; between two values it is taken as what lies \
+                "`{channel}` has a new value in one row of {every} in {runs}; between two values it is taken as what lies \
                  between."
             ),
             None => format!(
@@ -161,6 +173,19 @@ mod tests {
         assert!((0..99).all(|row| (values[row] - row as f64).abs() < 1e-9) && values[99] == 98.0);
         assert_eq!(sparse, [Sparse { channel: "tractive_force_n".to_owned(), every: Some(2) }]);
         assert!(told(&sparse)[0].contains("one row of 2 in one run"));
+    }
+
+    /// A bus gives a force ten times a second, and the log repeats it.
+    #[test]
+    fn a_value_that_is_repeated_until_the_next_one_comes_is_no_late_one() {
+        let law = |row: usize| 50.0 * row as f64;
+        let Filled { trace: made, sparse, .. } = filled(&with(|row| law(row - row % 3))).unwrap();
+        let values = made.get("tractive_force_n").unwrap();
+        assert!((0..97).all(|row| (values[row] - law(row)).abs() < 1e-9), "{values:?}");
+        assert_eq!(sparse, [Sparse { channel: "tractive_force_n".to_owned(), every: Some(3) }]);
+        // A force that changes when it likes has no rate.
+        let Filled { sparse, .. } = filled(&with(|row| (row as f64).sqrt().floor())).unwrap();
+        assert!(sparse.is_empty());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::cause::{Cause, Form, cause};
 use super::term::{linear, positive, shape};
-use super::{Around, fading, fading_s, windows};
+use super::{Around, fading, windows};
 use crate::balance::Kind;
 
 /// What is switched at the same time in every run belongs to a plan of the runs, which long ones do not have [s].
@@ -74,7 +74,7 @@ pub fn powers(all: &mut Vec<Cause>, around: &Around) {
             words,
             "repeat the cycle with the engine warm",
         )
-        .shaped(cooling_s(around))
+        .shaped([60.0, 150.0, 400.0, 900.0].iter().map(|tau| vec![*tau]).collect())
     };
     all.push(cold("an engine that starts cold"));
     let once = around.beginnings.iter();
@@ -82,15 +82,6 @@ pub fn powers(all: &mut Vec<Cause>, around: &Around) {
     if !around.beginnings.is_empty() {
         all.push(cold("an engine that starts as cold as it is in each run").by_run());
     }
-}
-
-/// Time constants that an engine warms up with, as far as runs of this length tell them.
-fn cooling_s(around: &Around) -> Vec<Vec<f64>> {
-    let (fastest_s, slowest_s) = fading_s(around);
-    let able = |tau: &f64| (fastest_s..=slowest_s).contains(tau);
-    let all: Vec<Vec<f64>> =
-        [60.0, 150.0, 400.0, 900.0].into_iter().filter(able).map(|tau| vec![tau]).collect();
-    if all.is_empty() { vec![vec![slowest_s]] } else { all }
 }
 
 #[cfg(test)]
@@ -115,13 +106,5 @@ mod tests {
             "auxiliary_power(times_s: [10.0, 30.0], powers_w: [1500.0])"
         );
         assert!(short[0].shapes.contains(&vec![10.0, 30.0]) && windows(7200.0).is_empty());
-    }
-
-    #[test]
-    fn an_engine_warms_up_no_slower_than_runs_can_tell() {
-        for duration_s in [10.0, 40.0, 1500.0] {
-            let cold = &of(duration_s, "cold_start")[0];
-            assert!(!cold.shapes.is_empty() && cold.shapes.iter().all(|shape| cold.possible(shape)));
-        }
     }
 }

@@ -126,18 +126,19 @@ mod tests {
         assert_eq!(early[1..], [1.0, 3.0, 7.0]);
     }
 
-    /// A receiver of 10 Hz in a log of 50 Hz, late by 0.19 s: what it says of 2 t² is true at 0.01, 0.11, …
+    /// A receiver of 10 Hz in a log of 50 Hz, late by 0.187 s: what it says of 2 t² is true at 0.013, 0.113, …
     #[test]
     fn a_late_channel_that_is_empty_or_held_between_its_values_stays_so() {
+        const LATE_S: f64 = 0.187;
         let law = |time_s: f64| 2.0 * time_s * time_s;
         let log = |held: bool| {
             let mut trace = Trace::new((0..300).map(|row| 0.02 * f64::from(row)).collect()).unwrap();
             let value = |row: usize| {
                 let new = 5 * (row / 5);
-                if held || row == new { law(0.02 * new as f64 - 0.19) } else { f64::NAN }
+                if held || row == new { law(0.02 * new as f64 - LATE_S) } else { f64::NAN }
             };
             trace.push("speed_m_s", (0..300).map(value).collect(), Origin::Measured).unwrap();
-            let sensor = Sensor { latency_s: Some(0.19), ..Sensor::default() };
+            let sensor = Sensor { latency_s: Some(LATE_S), ..Sensor::default() };
             correct(trace, &[("speed_m_s".to_owned(), sensor)]).unwrap().get("speed_m_s").unwrap().to_vec()
         };
         let (empty, held) = (log(false), log(true));
@@ -146,7 +147,7 @@ mod tests {
         for row in &known {
             // Linear between values that are 0.1 s apart.
             assert!(
-                (empty[*row] - law(0.02 * *row as f64)).abs() < 0.5 * 4.0 * 0.01 * 0.09 + 1e-9,
+                (empty[*row] - law(0.02 * *row as f64)).abs() < 0.5 * 4.0 * 0.007 * 0.093 + 1e-9,
                 "row {row}"
             );
             assert!(held[*row] == empty[*row] && row + 4 >= 300 || held[*row + 4] == empty[*row]);

@@ -155,9 +155,7 @@ pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]
         }
         let Some(top) = grown.first() else { break };
         others.extend(grown.iter().cloned());
-        // More causes that patch what fewer others are have to say more than as much.
-        let more = if holds(top, &best) { 0.0 } else { TOLERANCE };
-        if worth(top) > worth(&best) + more {
+        if worth(top) > worth(&best) {
             best = top.clone();
         }
         open = grown;
@@ -183,12 +181,6 @@ pub fn concluded(state: &State, best: Stand, found: &Found) -> Option<Found> {
 /// How good a set is, with what every cause more costs.
 pub fn worth(stand: &Stand) -> f64 {
     stand.score - PER_CAUSE * stand.parts.len() as f64
-}
-
-/// Whether a set holds every cause of another.
-fn holds(stand: &Stand, other: &Stand) -> bool {
-    let has = |part: &Part| stand.parts.iter().any(|own| own.trial.cause == part.trial.cause);
-    other.parts.iter().all(has)
 }
 
 /// Whether two sets hold the same causes.

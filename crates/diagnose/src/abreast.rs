@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn two_functions_of_the_same_rows_are_a_sum_of_processes() {
         let row = |row: usize| Row { samples: [row, row, row + 1], weights: vec![1.0], time_s: row as f64 };
-        let chunk = Chunk { balance: 0, run: 0, rows: (0..ROWS).map(row).collect() };
+        let chunk = Chunk { balance: 0, run: 0, rows: (0..ROWS).map(row).collect(), loudness: Vec::new() };
         let noise = Noise { shape: Shape::Averaged, sensor: 0.3, process: 0.2, persistence: 0.5 };
         let residual = column(|row| (0.9 * row).sin() + 0.2 * row);
         let whitened =

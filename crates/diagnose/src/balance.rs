@@ -2,6 +2,7 @@
 
 use crate::gram::Column;
 use crate::likeliest::{Weighted, likeliest};
+use crate::loudness;
 use crate::noise::{Noise, Noises, Shape};
 use crate::recorded::{Recorded, SLOWEST_M_S};
 use crate::rows::{Chunk, Row, chunks};
@@ -12,6 +13,7 @@ use headland_calibrate::statistics::{NORMAL_OF_MEDIAN, median};
 use headland_recording::renewed_s;
 use nalgebra::DVector;
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// Which balance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -198,7 +200,22 @@ impl System {
         let usual = usual.collect();
         let mut system = Self { kinds: kept, chunks: all, residual: Vec::new(), blocks_s, usual };
         system.residual = system.residual_of(runs, said);
+        system.listen(said, fit);
         system
+    }
+
+    /// Lets rows of fuel be as loud as they show themselves.
+    fn listen(&mut self, said: &[Said], fit: &[bool]) {
+        let Some(number) = self.kinds.iter().position(|kind| *kind == Kind::Fuel) else { return };
+        let power = self.column(|kind| match kind {
+            Kind::Fuel => said.iter().map(Said::fuel_w).collect(),
+            _ => vec![Vec::new(); said.len()],
+        });
+        let of_fuel: Vec<usize> =
+            (0..self.chunks.len()).filter(|index| self.chunks[*index].balance == number).collect();
+        let (Some(first), Some(last)) = (of_fuel.first(), of_fuel.last()) else { return };
+        let own = *first..last + 1;
+        loudness::set(&mut self.chunks[own.clone()], fit, &self.residual[own.clone()], &power[own]);
     }
 
     /// How many rows there are.
@@ -271,9 +288,11 @@ impl System {
             let own = self.chunks.iter().zip(left);
             let own = own.filter(|(chunk, _)| chunk.balance == number && fit[chunk.run]);
             let differences: Vec<f64> = own
-                .flat_map(|(_, left)| {
+                .flat_map(|(chunk, left)| {
+                    let left = chunk.alike(left);
                     let last = left.len().saturating_sub(2 * APART);
-                    (0..last).map(|row| (left[row] - 2.0 * left[row + APART] + left[row + 2 * APART]).abs())
+                    let second = |row| left[row] - 2.0 * left[row + APART] + left[row + 2 * APART];
+                    (0..last).map(|row: usize| second(row).abs()).collect::<Vec<_>>()
                 })
                 .collect();
             if differences.is_empty() {
@@ -300,7 +319,9 @@ impl System {
             };
             let brief = before.is_some_and(|before| before.brief[number]);
             let most = if brief { 0.0 } else { (-self.blocks_s[number] / LASTING_S).exp() };
-            let residuals: Vec<&DVector<f64>> = own().map(|(_, values)| values).collect();
+            let alike: Vec<Cow<DVector<f64>>> =
+                own().map(|((_, chunk), values)| chunk.alike(values)).collect();
+            let residuals: Vec<&DVector<f64>> = alike.iter().map(AsRef::as_ref).collect();
             let weights: Vec<Option<&DVector<f64>>> =
                 own().map(|((index, _), _)| tails.map(|tails| tails.weights(index))).collect();
             let rows = Weighted { residuals: &residuals, weights: &weights };

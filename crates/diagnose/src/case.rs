@@ -78,6 +78,8 @@ pub(crate) struct Case<'a> {
     pub scale: Option<Scale>,
     /// How late the speed of coast-downs was before the runs were corrected for it [s], where it was.
     pub late_s: Option<f64>,
+    /// Channels of powers that are late, and by how much [s].
+    pub late_powers: Vec<(&'static str, f64)>,
     /// The causes that are tried, where it is not all of them.
     pub only: Option<BTreeSet<usize>>,
     /// Times of the rows of their logs [s], which may be more than the runs have.
@@ -147,6 +149,7 @@ impl<'a> Case<'a> {
             no_faults: right(&prepared).into_iter().collect(),
             scale: prepared.scale,
             late_s: None,
+            late_powers: Vec::new(),
             logged_s: prepared.logged_s.clone(),
             sensors: recording.runs.iter().flat_map(|run| run.sensors.clone()).collect(),
             only: None,
@@ -361,6 +364,12 @@ impl<'a> Case<'a> {
             beginnings: beginnings(&self.fit, &self.bears),
             pulls: bearing().any(|run| run.force_n.is_some() || run.pull_n.is_some()),
         }
+    }
+
+    /// The greatest speed of all runs [m/s]; none where none is known.
+    pub fn fastest_m_s(&self) -> Option<f64> {
+        let speeds = self.runs.iter().flat_map(|run| &run.motion.value);
+        speeds.map(|speed| speed.abs()).filter(|speed| speed.is_finite()).max_by(f64::total_cmp)
     }
 
     /// Length of the longest run [s].

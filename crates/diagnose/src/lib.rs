@@ -39,11 +39,13 @@ mod in_doubt;
 mod in_neutral;
 mod jumps;
 mod laid;
+mod late_power;
 mod leaps;
 mod likeliest;
 mod locate;
 mod look;
 mod losses;
+mod loudness;
 mod map;
 mod mirror;
 mod noise;
@@ -59,6 +61,7 @@ mod rivals;
 mod rows;
 mod said;
 mod search;
+mod second;
 mod sensors;
 mod sharpen;
 mod slowed;
@@ -113,6 +116,17 @@ pub fn diagnose(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Diagnosed, DiagnoseError> {
+    let look = |options: &Options| diagnose_once(scenario, recording, registry, options, progress);
+    second::opinion(look(options)?, options, look)
+}
+
+fn diagnose_once(
+    scenario: &Scenario,
+    recording: &Recording,
+    registry: &Registry,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Diagnosed, DiagnoseError> {
     let mut case = Case::new(scenario, recording, registry, options, progress)?;
     let (mut faults, mut sound) = faults::faults(&case.runs, &case.sensors);
     faults.extend(case.faulty_scale().as_ref().map(faults::scaled));
@@ -120,6 +134,9 @@ pub fn diagnose(
     engine_off::leave_out(&mut case, &mut sound);
     if let Some(late) = begun::late(&case) {
         faults.extend(begun::set_right(&mut case, late, &mut sound)?);
+    }
+    for late in late_power::late(&case) {
+        faults.push(late_power::set_right(&mut case, late, &mut sound)?);
     }
     case.sound.clone_from(&sound);
     let against = contradiction::statements(&case, &sound);

@@ -160,10 +160,21 @@ impl Look {
 
     /// Searches once more with shapes between the points of the grids, and with causes as they are at their size.
     pub fn sharpen(&mut self, case: &Case) -> Result<(), DiagnoseError> {
-        let finer = sharpen::sharpen(case, &self.system, &mut self.pool, &self.found)?;
-        let bent = bend::bend(case, &self.system, &mut self.pool, &self.found)?;
-        if finer || bent {
-            self.found = searched(case, &self.system, &self.pool)?;
+        /// Speeds of one cause show one after the other.
+        const ROUNDS: usize = 2;
+        let speeds = |found: &Found| -> usize {
+            found.accepted.iter().map(|one| case.causes[one.trial.cause].speeds()).sum()
+        };
+        for _ in 0..ROUNDS {
+            let before = speeds(&self.found);
+            let finer = sharpen::sharpen(case, &self.system, &mut self.pool, &self.found)?;
+            let bent = bend::bend(case, &self.system, &mut self.pool, &self.found)?;
+            if finer || bent {
+                self.found = searched(case, &self.system, &self.pool)?;
+            }
+            if speeds(&self.found) <= before {
+                break;
+            }
         }
         Ok(())
     }

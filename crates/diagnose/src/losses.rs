@@ -7,12 +7,14 @@
 //! for loss maps as sums of k Tᵐ ωⁿ, those of the inverter and of a weakened field among them.
 
 use crate::Case;
-use crate::balance::{FUEL_J_KG, Kind, System, longest_renewal_s};
+use crate::balance::{Kind, System, longest_renewal_s};
 use crate::gram::Column;
 use crate::recorded::Recorded;
+use crate::rows::Chunk;
 use crate::said::Said;
 use crate::sensors::Small;
 use headland_sim::local_fit;
+use nalgebra::{DMatrix, DVector};
 
 /// The loss that goes with the square of speed.
 pub const SPEED_SQUARED: &str = "battery_speed_squared";
@@ -79,6 +81,93 @@ pub fn slow_powers(case: &Case, system: &System) -> Vec<Small> {
     LATE.into_iter().map(of).filter(|small| any(&small.column)).collect()
 }
 
+/// What a line between fuel and work leaves of an engine whose noise grows with its power: fuel that bends with power and with
+/// power at speed, by what no free parameter could say; `free` are their columns.
+///
+/// Source: second-order terms of fuel maps; Guzzella and Onder, *Introduction to Modeling and Control of Internal Combustion Engine
+/// Systems* (2010), section 2.5.
+pub fn bent_engine(case: &Case, system: &System, free: &[Column]) -> Vec<Small> {
+    /// Of the power of the fuel, both as root mean squares.
+    const BENT: f64 = 0.03;
+    if system.chunks.iter().all(|chunk| chunk.loudness.is_empty()) {
+        return Vec::new();
+    }
+    let column = |of: fn(f64, f64) -> f64| {
+        system.column(|kind| {
+            let of_run = |(run, said): (&Recorded, &Said)| match kind {
+                Kind::Fuel => {
+                    let powers = said.fuel_w();
+                    powers.iter().zip(&run.motion.value).map(|(power, speed)| of(*power, *speed)).collect()
+                }
+                _ => Vec::new(),
+            };
+            case.runs.iter().zip(&case.nominal).map(of_run).collect()
+        })
+    };
+    let usual = |column: &Column| root_mean_square(system, &case.fit, column);
+    let power = column(|power, _| power);
+    let even = column(|_, _| 1.0);
+    let known: Vec<&Column> = free.iter().chain([&even, &power]).collect();
+    let of = |(id, of): (&'static str, fn(f64, f64) -> f64)| {
+        let column = beyond(system, &case.fit, &column(of), &known)?;
+        let sd = BENT * usual(&power) / usual(&column);
+        Some(Small { id, column, sd })
+    };
+    let bends: [(&'static str, fn(f64, f64) -> f64); 2] = [
+        ("fuel_power_squared", |power, _| power * power),
+        ("fuel_power_speed", |power, speed| power * speed.abs()),
+    ];
+    bends.into_iter().filter_map(of).filter(|small| small.sd.is_finite() && small.sd > 0.0).collect()
+}
+
+/// Root mean square of the fitted rows of fuel, each by its own noise.
+fn root_mean_square(system: &System, fit: &[bool], column: &Column) -> f64 {
+    let rows = system.chunks.iter().zip(column);
+    let own = rows.filter(|(chunk, _)| fit[chunk.run] && system.kind(chunk) == Kind::Fuel);
+    let (square, count) = own.fold((0.0, 0usize), |(square, count), (chunk, values)| {
+        (square + chunk.alike(values).norm_squared(), count + values.len())
+    });
+    (square / count.max(1) as f64).sqrt()
+}
+
+/// What others leave of a column in the rows of fuel, by least squares over the fitted ones; none where they are one.
+fn beyond(system: &System, fit: &[bool], column: &Column, others: &[&Column]) -> Option<Column> {
+    /// Of the greatest singular value: what is less is no other direction.
+    const LEAST: f64 = 1e-9;
+    let size = |column: &Column| root_mean_square(system, fit, column);
+    let others: Vec<(&Column, f64)> =
+        others.iter().map(|other| (*other, size(other))).filter(|(_, size)| *size > 0.0).collect();
+    let mut products = DMatrix::<f64>::zeros(others.len(), others.len());
+    let mut sides = DVector::<f64>::zeros(others.len());
+    for (index, chunk) in system.chunks.iter().enumerate() {
+        if !fit[chunk.run] || system.kind(chunk) != Kind::Fuel {
+            continue;
+        }
+        let own = chunk.alike(&column[index]);
+        for (row, (other, one)) in others.iter().enumerate() {
+            let other = chunk.alike(&other[index]);
+            sides[row] += other.dot(&own) / one;
+            for (place, (another, size)) in others.iter().enumerate().take(row + 1) {
+                let product = other.dot(&chunk.alike(&another[index])) / (one * size);
+                products[(row, place)] += product;
+                products[(place, row)] = products[(row, place)];
+            }
+        }
+    }
+    let shares = products.svd(true, true).solve(&sides, LEAST).ok()?;
+    let of_chunk = |(index, chunk): (usize, &Chunk)| {
+        let mut left = column[index].clone();
+        if system.kind(chunk) == Kind::Fuel {
+            for ((other, size), share) in others.iter().zip(&shares) {
+                let share: f64 = *share / *size;
+                left.axpy(-share, &other[index], 1.0);
+            }
+        }
+        left
+    };
+    Some(system.chunks.iter().enumerate().map(of_chunk).collect())
+}
+
 /// What every engine's own torque is wrong by: it is no measurement, but what its controller makes of injection and speed.
 ///
 /// A scale and an offset, smaller than those that were found on tractors (Marx et al., 1 to 5 % of the greatest torque), so
@@ -114,7 +203,7 @@ fn made_of_motion(kind: Kind, run: &Recorded, said: &Said) -> Option<Vec<f64>> {
     match kind {
         Kind::Shaft => said.engine_w.clone(),
         Kind::Charge => said.drawn_w(run),
-        Kind::Fuel => Some(said.fuel_kg_s.as_ref()?.iter().map(|fuel| FUEL_J_KG * fuel).collect()),
+        Kind::Fuel => said.fuel_kg_s.is_some().then(|| said.fuel_w()),
         _ => None,
     }
 }

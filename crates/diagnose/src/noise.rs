@@ -243,6 +243,9 @@ impl Whiteners {
 
     /// Whitens the rows of a chunk of this number, column by column, and makes each count as much as it should.
     pub fn whiten(&self, number: usize, chunk: &Chunk, values: &mut DMatrix<f64>) {
+        for (row, loud) in chunk.loudness.iter().enumerate() {
+            values.row_mut(row).unscale_mut(*loud);
+        }
         self.of(chunk).whiten_all(values);
         let Some(tails) = &self.tails else { return };
         for (row, weight) in tails.weights(number).iter().enumerate() {
@@ -252,7 +255,7 @@ impl Whiteners {
 
     /// As [`Whiteners::whiten`], of one column.
     pub fn white(&self, number: usize, chunk: &Chunk, values: &DVector<f64>) -> DVector<f64> {
-        let white = self.of(chunk).whiten(values);
+        let white = self.of(chunk).whiten(&chunk.alike(values));
         match &self.tails {
             Some(tails) => white.zip_map(tails.weights(number), |white, weight| weight.sqrt() * white),
             None => white,
@@ -262,7 +265,8 @@ impl Whiteners {
     /// ln |Σ| of a chunk of this number, less what a bound of the density takes, twice.
     pub fn log_determinant(&self, number: usize, chunk: &Chunk) -> f64 {
         let tails = self.tails.as_ref().map_or(0.0, |tails| tails.log_determinant(number));
-        self.of(chunk).log_determinant(chunk.rows.len()) + tails
+        let loud: f64 = chunk.loudness.iter().map(|loud| 2.0 * loud.ln()).sum();
+        self.of(chunk).log_determinant(chunk.rows.len()) + loud + tails
     }
 }
 

@@ -176,6 +176,7 @@ fn cause(id: &'static str, words: &'static str, term: Term, own: Own) -> Cause {
         law: None,
         own: Some(own),
         by_run: false,
+        upstream: false,
         run: None,
     }
 }

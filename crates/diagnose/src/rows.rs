@@ -7,6 +7,8 @@
 //! Source: the test-function form of system identification, Messenger and Bortz, *Multiscale Model. Simul.* 19 (2021),
 //! with the hat as test function.
 
+use nalgebra::DVector;
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Which samples make a row.
@@ -29,6 +31,19 @@ pub struct Chunk {
     pub run: usize,
     /// Its rows.
     pub rows: Vec<Row>,
+    /// Noise of each row over the usual one (loudness.rs); empty where all are alike.
+    pub loudness: Vec<f64>,
+}
+
+impl Chunk {
+    /// Rows by their own noise, so that all are alike.
+    pub fn alike<'a>(&self, values: &'a DVector<f64>) -> Cow<'a, DVector<f64>> {
+        if self.loudness.is_empty() {
+            return Cow::Borrowed(values);
+        }
+        let all = values.iter().zip(&self.loudness).map(|(value, loud)| value / loud);
+        Cow::Owned(DVector::from_iterator(values.len(), all))
+    }
 }
 
 /// Number of a block, its first sample and the one behind its last.
@@ -49,7 +64,7 @@ pub fn chunks(balance: usize, run: usize, time_s: &[f64], usable: &[bool], block
         let pieces = rows.len().div_ceil(LONGEST_CHUNK).max(1);
         for piece in rows.chunks(rows.len().div_ceil(pieces).max(1)) {
             if piece.len() >= SHORTEST_CHUNK {
-                chunks.push(Chunk { balance, run, rows: piece.to_vec() });
+                chunks.push(Chunk { balance, run, rows: piece.to_vec(), loudness: Vec::new() });
             }
         }
     };

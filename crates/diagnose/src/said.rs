@@ -1,7 +1,7 @@
 //! What a model says of a recorded run, sample by sample.
 
 use crate::DiagnoseError;
-use crate::balance::Kind;
+use crate::balance::{FUEL_J_KG, Kind};
 use crate::recorded::{Recorded, force};
 use crate::voltage::{residual_v, resistance_ohm};
 use headland_sim::{Drive, Inputs, Model, Replay, replay};
@@ -143,6 +143,11 @@ impl Said {
     /// The first effective mass of the run, where it has any [kg].
     pub fn first_mass_kg(&self) -> Option<f64> {
         self.effective_mass_kg.iter().copied().find(|mass| mass.is_finite())
+    }
+
+    /// Power of the fuel [W].
+    pub fn fuel_w(&self) -> Vec<f64> {
+        self.fuel_kg_s.iter().flatten().map(|fuel| FUEL_J_KG * fuel).collect()
     }
 
     /// Power that the state of charge says is drawn, as the battery of a run nominally holds it [W].

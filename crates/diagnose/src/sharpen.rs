@@ -2,7 +2,7 @@
 
 use crate::catalogue::Form;
 use crate::look::MANY_ROWS;
-use crate::search::Found;
+use crate::search::{Found, LEAST_GAIN};
 use crate::state::{Part, State};
 use crate::trial::{Pool, add_trial};
 use crate::{Case, DiagnoseError, System};
@@ -73,6 +73,9 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
                 continue;
             }
             let best = best(case, system, pool, found, how, (cause, &shape))?;
+            if how == How::ByItself {
+                added |= grow(case, system, pool, found, (cause, &best))?;
+            }
             if best != shape {
                 // What fades by a time constant of its own is no better for having found it first.
                 for alike in alike(case, cause) {
@@ -83,6 +86,67 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
         }
     }
     Ok(added)
+}
+
+/// Adds trials of the same cause at one more speed, and at another, while each makes the recordings more likely than chance would:
+/// grids of several speeds are too coarse for what is narrow. Whether there were any.
+fn grow(
+    case: &Case,
+    system: &System,
+    pool: &mut Pool,
+    found: &Found,
+    (cause, shape): (usize, &[f64]),
+) -> Result<bool, DiagnoseError> {
+    /// Places at which one more is tried, over the range that the known ones and the fastest speed span.
+    const PLACES: u8 = 24;
+    let (mut cause, mut shape, mut added) = (cause, shape.to_vec(), false);
+    while let Some(next) = case.causes[cause].with_one_more_speed(&case.causes) {
+        let Some(fastest_m_s) = case.fastest_m_s() else { break };
+        let mut greatest = likely(case, system, pool, found, (cause, &shape))? + LEAST_GAIN;
+        let before = greatest;
+        let mut longer = shape.clone();
+        for place in 1..=PLACES {
+            let speed_m_s = fastest_m_s * f64::from(place) / f64::from(PLACES);
+            let other: Vec<f64> = shape.iter().copied().chain([speed_m_s]).collect();
+            let gain = likely(case, system, pool, found, (next, &other))?;
+            if gain > greatest {
+                (longer, greatest) = (other, gain);
+            }
+        }
+        if greatest <= before {
+            break;
+        }
+        shape = best(case, system, pool, found, How::ByItself, (next, &longer))?;
+        cause = next;
+        add_trial(case, system, pool, cause, &shape)?;
+        added = true;
+    }
+    Ok(added)
+}
+
+/// How likely a cause of this shape makes the recordings, by itself.
+fn likely(
+    case: &Case,
+    system: &System,
+    pool: &mut Pool,
+    found: &Found,
+    (cause, shape): (usize, &[f64]),
+) -> Result<f64, DiagnoseError> {
+    if !case.causes[cause].possible(shape) {
+        return Ok(f64::NEG_INFINITY);
+    }
+    let (columns, trials) = (pool.columns.len(), pool.trials.len());
+    add_trial(case, system, pool, cause, shape)?;
+    let state = State { case, system, pool, fit: &case.fit };
+    // What was accepted left the noise that it left.
+    let accepted = found.accepted.iter().any(|one| case.causes[one.trial.cause].id == case.causes[cause].id);
+    let noises = if accepted { &found.noises.1 } else { &found.noises.0 };
+    let judged = pool.trials[trials..]
+        .iter()
+        .filter_map(|trial| state.likely(&[Part { trial: trial.clone(), spread: None }], noises));
+    let greatest = judged.fold(f64::NEG_INFINITY, f64::max);
+    pool.truncate(columns, trials);
+    Ok(greatest)
 }
 
 /// A cause, and others whose shapes have the same names: each is tried at the best shape of the other.

@@ -92,8 +92,15 @@ fn choice(cause: &Cause) -> f64 {
     let found = cause.law.as_ref().map_or(0.0, |law| law.cost);
     let tilt = cause.id == "accelerometer_tilt";
     let square = cause.terms.iter().any(|term| term.name == "quadratic");
+    // Of no grid, each of its speeds was found at one of so many places.
+    const PLACES: f64 = 24.0;
+    let shapes = if cause.shapes.is_empty() {
+        cause.speeds() as f64 * PLACES.ln()
+    } else {
+        (cause.shapes.len() as f64).ln()
+    };
     found
-        + (cause.shapes.len().max(1) as f64).ln()
+        + shapes
         + if clock { BY_THE_CLOCK } else { 0.0 }
         + if tilt { TILT } else { 0.0 }
         + if square { SQUARE } else { 0.0 }

@@ -35,7 +35,8 @@ impl Tails {
     /// As the rows ask for it that a set of causes leaves.
     pub fn of(chunks: &[Chunk], noises: &Noises, left: &Column) -> Option<Self> {
         let whiteners = noises.whiteners(chunks)?;
-        let of_chunk = |(chunk, left): (&Chunk, &DVector<f64>)| Own::of(&whiteners.of(chunk).whiten(left));
+        let of_chunk =
+            |(chunk, left): (&Chunk, &DVector<f64>)| Own::of(&whiteners.of(chunk).whiten(&chunk.alike(left)));
         Some(Self(Arc::new(chunks.iter().zip(left).map(of_chunk).collect())))
     }
 

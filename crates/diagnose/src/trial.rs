@@ -4,7 +4,7 @@
 use crate::balance::{Kind, System, change};
 use crate::catalogue::{Cause, Form};
 use crate::gram::Column;
-use crate::losses::{slow_powers, small_losses, torque_errors};
+use crate::losses::{bent_engine, slow_powers, small_losses, torque_errors};
 use crate::recorded::Recorded;
 use crate::said::Said;
 use crate::sensors::{fault, small_faults};
@@ -58,6 +58,8 @@ const NUISANCE_STEP: f64 = 0.3;
 const CAUSE_STEP: f64 = 0.5;
 /// What is left of a corrected fault, as a share of its usual size.
 const REST: f64 = 0.1;
+/// What a map of the ground is everywhere, as a share of what it is in places: that is the soil's own.
+const LEVEL: f64 = 0.1;
 /// A column weaker than this share of the residual says nothing.
 const WEAKEST: f64 = 1e-7;
 
@@ -79,7 +81,8 @@ pub fn nuisance(case: &Case, system: &System) -> Result<Pool, DiagnoseError> {
         pool.sd.push(sd);
     }
     let small = small_faults(case, system)?.into_iter().chain(small_losses(case, system));
-    for small in small.chain(slow_powers(case, system)).chain(torque_errors(case, system)) {
+    let bent = bent_engine(case, system, &pool.columns);
+    for small in small.chain(slow_powers(case, system)).chain(torque_errors(case, system)).chain(bent) {
         pool.small.push((small.id, pool.columns.len()));
         pool.columns.push(small.column);
         pool.sd.push(small.sd);
@@ -131,11 +134,13 @@ pub fn add_trial(
         } else {
             effect(case, system, cause, step, &|run| signature(cause, term, step, shape, run))?
         };
-        found.push(Part { column, scale: part.scale, term });
+        let scale =
+            if cause.id == "soft_ground" && cause.is_function() { LEVEL * part.scale } else { part.scale };
+        found.push(Part { column, scale, term });
     }
     let beside = found.first().map_or_else(Vec::new, |one| with_speed(case, system, cause, &one.column));
     let trials = pool.trials.len();
-    add(system, pool, number, shape, found);
+    add(system, pool, (number, cause), shape, found);
     if let Some(trial) = pool.trials.get_mut(trials) {
         trial.beside = (pool.columns.len()..pool.columns.len() + beside.len()).collect();
         for (column, sd) in beside {
@@ -271,7 +276,7 @@ struct Part {
     term: usize,
 }
 
-fn add(system: &System, pool: &mut Pool, cause: usize, shape: &[f64], found: Vec<Part>) {
+fn add(system: &System, pool: &mut Pool, (number, cause): (usize, &Cause), shape: &[f64], found: Vec<Part>) {
     let everywhere = vec![true; system.chunks.iter().map(|chunk| chunk.run + 1).max().unwrap_or(0)];
     let squares = |column: &Column| system.mean_squares(column, &everywhere);
     let residual = squares(&system.residual);
@@ -292,10 +297,16 @@ fn add(system: &System, pool: &mut Pool, cause: usize, shape: &[f64], found: Vec
     }
     // A cause of several terms is tried with each of them alone as well: none is claimed that is not needed.
     if columns.len() > 1 {
-        for (column, term) in columns.iter().zip(&terms) {
+        for (column, term) in columns.iter().zip(&terms).filter(|(_, term)| cause.alone(**term)) {
             let (columns, terms) = (vec![*column], vec![*term]);
-            pool.trials.push(Trial { cause, shape: shape.to_vec(), columns, terms, beside: Vec::new() });
+            pool.trials.push(Trial {
+                cause: number,
+                shape: shape.to_vec(),
+                columns,
+                terms,
+                beside: Vec::new(),
+            });
         }
     }
-    pool.trials.push(Trial { cause, shape: shape.to_vec(), columns, terms, beside: Vec::new() });
+    pool.trials.push(Trial { cause: number, shape: shape.to_vec(), columns, terms, beside: Vec::new() });
 }

@@ -33,6 +33,7 @@ mod speed_threshold;
 #[cfg(test)]
 mod testing;
 mod turbo_lag;
+mod upstream;
 mod variator_loss;
 mod wheel_slip;
 mod wind;

@@ -8,6 +8,7 @@
 //! Fingerprint: narrow dips of the drive force at the same few speeds, in every run, and none while coasting.
 
 use crate::series::refuse;
+use crate::upstream::UPSTREAM;
 use headland_plugin::{Action, Bound, Card, Effect, Plugin, Refusal, Situation, parameter};
 use serde::Deserialize;
 use std::path::Path;
@@ -19,6 +20,8 @@ pub struct ShiftTransient {
     force_n: f64,
     speeds_m_s: Vec<f64>,
     width_m_s: f64,
+    #[serde(default)]
+    upstream: bool,
 }
 
 impl Plugin for ShiftTransient {
@@ -36,6 +39,7 @@ impl Plugin for ShiftTransient {
                 .must_be(Bound::NotNegative)
                 .usually(0.5, 20.0),
             parameter("width_m_s", "m/s", "of the bell, w").must_be(Bound::Positive).usually(0.05, 1.0),
+            UPSTREAM,
         ],
     };
 
@@ -60,6 +64,9 @@ impl Effect for ShiftTransient {
             (-0.5 * away * away).exp()
         };
         let bells: f64 = self.speeds_m_s.iter().map(bell).sum();
+        if self.upstream {
+            return Action { upstream_n: self.force_n * bells, ..Action::default() };
+        }
         Action { resistance_n: self.force_n * bells, ..Action::default() }
     }
 }
@@ -79,6 +86,13 @@ mod tests {
         assert!(same(act::<ShiftTransient>(SHIFT, &beside).resistance_n, 1000.0 * (-2f64).exp()));
         let coasting = Situation { coasting: true, ..at_10_m_s() };
         assert_eq!(act::<ShiftTransient>(SHIFT, &coasting).resistance_n, 0.0);
+    }
+
+    #[test]
+    fn upstream_it_asks_more_of_what_drives_instead() {
+        let upstream = SHIFT.replace("(force_n", "(upstream: true, force_n");
+        let action = act::<ShiftTransient>(&upstream, &at_10_m_s());
+        assert!(same(action.upstream_n, 1000.0) && action.resistance_n == 0.0);
     }
 
     #[test]

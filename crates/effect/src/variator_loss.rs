@@ -8,6 +8,7 @@
 //! speed.
 
 use crate::series::refuse;
+use crate::upstream::UPSTREAM;
 use headland_plugin::{Action, Bound, Card, Effect, Plugin, Refusal, Situation, parameter};
 use serde::Deserialize;
 use std::path::Path;
@@ -18,6 +19,8 @@ use std::path::Path;
 pub struct VariatorLoss {
     loss: f64,
     node_speeds_m_s: Vec<f64>,
+    #[serde(default)]
+    upstream: bool,
 }
 
 impl Plugin for VariatorLoss {
@@ -38,6 +41,7 @@ impl Plugin for VariatorLoss {
             parameter("node_speeds_m_s", "[m/s]", "speeds at which all power goes the mechanical way, vᵢ")
                 .must_be(Bound::Positive)
                 .usually(0.5, 20.0),
+            UPSTREAM,
         ],
     };
 
@@ -56,6 +60,9 @@ impl Effect for VariatorLoss {
     fn act(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Action {
         let v = at.speed_m_s.abs();
         let share = self.node_speeds_m_s.iter().map(|node| (1.0 - v / node).abs()).fold(1.0, f64::min);
+        if self.upstream {
+            return Action { upstream_share: self.loss * share, ..Action::default() };
+        }
         Action { loss_share: self.loss * share, ..Action::default() }
     }
 }
@@ -74,6 +81,13 @@ mod tests {
             let action = act::<VariatorLoss>("(loss: 0.2, node_speeds_m_s: [4.0, 8.0])", &at);
             assert!(same(action.loss_share, expected), "{speed_m_s}: {}", action.loss_share);
         }
+    }
+
+    #[test]
+    fn upstream_it_asks_more_of_what_drives_instead() {
+        let at = Situation { speed_m_s: 5.0, ..at_10_m_s() };
+        let action = act::<VariatorLoss>("(loss: 0.2, node_speeds_m_s: [4.0, 8.0], upstream: true)", &at);
+        assert!(same(action.upstream_share, 0.05) && action.loss_share == 0.0);
     }
 
     #[test]

@@ -23,6 +23,10 @@ pub struct Action {
     pub drag_area_m2: f64,
     /// Share of the force at the wheels, driving or braking, that is lost against the motion before it reaches the ground.
     pub loss_share: f64,
+    /// As `loss_share`, lost before the place where the force at the wheels is told: what drives has to give so much more.
+    pub upstream_share: f64,
+    /// Force against the motion that is lost before that place [N].
+    pub upstream_n: f64,
     /// Slip for each newton at the wheels [1/N]: they turn as if the speed were v / (1 − s).
     pub slip_per_n: f64,
     /// Friction torque at the engine, beside its own [N m].

@@ -80,6 +80,8 @@ pub(crate) struct Instant {
     pub hydraulic_power_w: f64,
     /// Speed at which the wheels roll.
     pub wheel_speed_m_s: f64,
+    /// Force of the driveline before what is lost upstream [N].
+    pub transmitted_n: f64,
     /// Power that slip takes for each 1/N of it [W N].
     pub slip_w_n: f64,
     /// Slip of the driveline's speed, without what effects add.
@@ -98,7 +100,11 @@ impl Instant {
 
     /// Power that an effect takes beside its forces [W].
     pub fn power_w(&self, action: &Action) -> f64 {
-        action.auxiliary_power_w + action.shaft_power_w + action.slip_per_n * self.slip_w_n
+        let upstream_n = action.upstream_n + action.upstream_share * self.transmitted_n.abs();
+        action.auxiliary_power_w
+            + action.shaft_power_w
+            + action.slip_per_n * self.slip_w_n
+            + upstream_n * self.demand.speed_m_s.abs()
     }
 }
 
@@ -447,6 +453,8 @@ impl Model {
             sums.auxiliary_power_w += action.auxiliary_power_w;
             sums.effect_shaft_w += action.shaft_power_w;
             sums.loss_share += action.loss_share;
+            sums.upstream_share += action.upstream_share;
+            sums.upstream_n += action.upstream_n;
             sums.slip_per_n += action.slip_per_n;
             sums.engine_friction_n_m += action.engine_friction_n_m;
             sums.battery_resistance_ohm += action.battery_resistance_ohm;
@@ -485,6 +493,8 @@ pub(crate) struct Sums {
     pub auxiliary_power_w: f64,
     pub effect_shaft_w: f64,
     pub loss_share: f64,
+    pub upstream_share: f64,
+    pub upstream_n: f64,
     pub slip_per_n: f64,
     pub engine_friction_n_m: f64,
     pub battery_resistance_ohm: f64,
@@ -521,6 +531,7 @@ pub(crate) fn tell(
         auxiliary_power_w: sums.auxiliary_power_w,
         pto_power_w: sums.pto_power_w,
         hydraulic_power_w: sums.hydraulic_power_w,
+        transmitted_n: sums.transmitted_n(delivery.force_n, asked.way()),
         wheel_speed_m_s: if rolled.locked { 0.0 } else { demand.speed_m_s },
         slip_w_n: if sums.slip_per_n == 0.0 {
             0.0

@@ -264,7 +264,7 @@ impl Model {
         let slip = (sums.slip_per_n * demand.force_n * asked.direction).clamp(-MOST_SLIP, MOST_SLIP);
         demand.speed_m_s = rolling_m_s / (1.0 - slip);
         let own = asked.layout.driveline.clone();
-        let delivery = self.driveline.deliver(&demand, &asked.states[own.clone()], &mut rates[own]);
+        let delivery = self.deliver(&demand, (sums, way), &asked.states[own.clone()], &mut rates[own]);
         let brake_n = asked.brake_n(|| {
             let more_n = (delivery.force_n - wanted_n) * asked.direction;
             more_n - lost_n(delivery.force_n) + lost_n(wanted_n)

@@ -38,6 +38,7 @@ mod simulation;
 mod slope;
 mod step;
 mod traction;
+mod upstream;
 mod wheels;
 
 pub use axles::{Axle, Axles};

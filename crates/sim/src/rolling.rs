@@ -57,17 +57,20 @@ impl Model {
         if DECIDES && sums.slip_per_n == 0.0 && !own.is_empty() {
             own = deciding.decide(&*self.driveline, &demand, own, &rates[range.clone()]);
         }
-        let mut delivery = self.driveline.deliver(&demand, own, &mut rates[range.clone()]);
+        let behind = (sums, asked.way());
+        let mut delivery = self.deliver(&demand, behind, own, &mut rates[range.clone()]);
         // A recorded motion was driven by what it took, and a recorded force was there, whatever the driveline of the model
         // could have given.
         let recorded = given.driven || matches!(command, Command::Recorded(_));
         if sums.slip_per_n != 0.0 && delivery.force_n != demand.force_n && !recorded {
             demand.speed_m_s = slip_of(delivery.force_n);
-            delivery = self.driveline.deliver(&demand, own, &mut rates[range]);
+            delivery = self.deliver(&demand, behind, own, &mut rates[range]);
         }
         if let Command::Recorded(force_n) = command {
             // The recording has the last word on the force; what the model would not have given is made up by no one.
-            delivery.source_power_w += (force_n - delivery.force_n) * demand.speed_m_s;
+            let transmitted_n = |force_n: f64| sums.transmitted_n(force_n, asked.way());
+            delivery.source_power_w +=
+                (transmitted_n(force_n) - transmitted_n(delivery.force_n)) * demand.speed_m_s;
             delivery.force_n = force_n;
         }
         let brake_n = asked.brake_n(|| {

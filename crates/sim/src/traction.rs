@@ -208,13 +208,15 @@ impl Model {
             };
             demand.speed_m_s = turning_m_s(asked, sums, slip, force_n);
             let delivery =
-                self.driveline.deliver(demand, &asked.states[own.clone()], &mut rates[own.clone()]);
+                self.deliver(demand, (sums, way), &asked.states[own.clone()], &mut rates[own.clone()]);
             (delivery, slip)
         };
         let mut force_n = asked_n;
         let (mut delivery, mut slip) = ask(force_n);
         if let Command::Recorded(recorded_n) = asked.command {
-            delivery.source_power_w += (recorded_n - delivery.force_n) * demand.speed_m_s;
+            let transmitted_n = |force_n: f64| sums.transmitted_n(force_n, way);
+            delivery.source_power_w +=
+                (transmitted_n(recorded_n) - transmitted_n(delivery.force_n)) * demand.speed_m_s;
             delivery.force_n = recorded_n;
             return (delivery, slip);
         }

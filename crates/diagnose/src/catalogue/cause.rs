@@ -1,6 +1,7 @@
 //! A cause that is tried: an effect of the simulator, how its parameters are written, and what it can be.
 
 use super::law_text::LawText;
+use super::powers::START;
 use super::term::Term;
 use crate::balance::Kind;
 use crate::own::Own;
@@ -60,6 +61,8 @@ pub struct Cause {
     pub own: Option<Own>,
     /// Whether a function of time has one value throughout each run.
     pub by_run: bool,
+    /// Whether it lies before the place where the force at the wheels is told.
+    pub upstream: bool,
     /// The one run in which it works; none where it works in all of them.
     pub run: Option<usize>,
 }
@@ -87,6 +90,7 @@ pub fn cause(
         law: None,
         own: None,
         by_run: false,
+        upstream: false,
         run: None,
     }
 }
@@ -106,6 +110,20 @@ impl Cause {
     /// Places of the speed at which a ramp begins and of its width among the terms, where it has one.
     fn ramp(&self) -> Option<(usize, usize)> {
         self.places("threshold_m_s", "width_m_s")
+    }
+
+    /// How many mechanical points or changes of range it has.
+    pub fn speeds(&self) -> usize {
+        const SPEEDS: [&str; 2] = ["node_speed_m_s", "speed_m_s"];
+        self.terms.iter().filter(|term| SPEEDS.contains(&term.name)).count()
+    }
+
+    /// The same cause with one speed more, by its place among all.
+    pub fn with_one_more_speed(&self, all: &[Self]) -> Option<usize> {
+        let wanted = |other: &Self| {
+            other.id == self.id && other.upstream == self.upstream && other.speeds() == self.speeds() + 1
+        };
+        if self.speeds() == 0 { None } else { all.iter().position(wanted) }
     }
 
     /// Places of two terms by their names, where it has both.
@@ -157,9 +175,21 @@ impl Cause {
         self
     }
 
+    /// Before the place where the force at the wheels is told: only what powers say tells of it.
+    pub fn upstream(mut self) -> Self {
+        self.balances = &[Kind::Battery, Kind::Fuel];
+        self.upstream = true;
+        self
+    }
+
     pub fn in_run(mut self, run: usize) -> Self {
         self.run = Some(run);
         self
+    }
+
+    /// Whether a term can be all that there is of it.
+    pub fn alone(&self, term: usize) -> bool {
+        self.terms[term].name != START
     }
 
     /// Whether it is among those that the runs do not teach each other; one of them may still show it by itself.
@@ -244,6 +274,15 @@ impl Cause {
 
     /// The effect as a scenario writes it, with all parameters in the order of the terms.
     pub fn written(&self, values: &[f64]) -> String {
+        let text = self.acting(values);
+        match text.strip_suffix(')') {
+            Some(open) if self.upstream => format!("{open}, upstream: true)"),
+            _ => text,
+        }
+    }
+
+    /// The same, wherever it acts.
+    fn acting(&self, values: &[f64]) -> String {
         if let Some(own) = &self.own {
             return own.written(values[0]);
         }

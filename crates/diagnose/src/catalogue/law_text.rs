@@ -99,6 +99,7 @@ impl Cause {
             law: Some(law),
             own: None,
             by_run: false,
+            upstream: false,
             run: None,
         }
     }

@@ -239,16 +239,18 @@ fn chosen(speeds: &[f64], count: usize) -> Vec<Vec<f64>> {
     (0..speeds.len()).flat_map(first).collect()
 }
 
-/// Mechanical points of a variator with as many ranges, and changes of range that are told apart.
-const MOST_MECHANICAL_POINTS: usize = 2;
-const MOST_SHIFTS: usize = 2;
+/// Mechanical points of a variator with as many ranges, and changes of range: so many are looked for on a grid, and so many at
+/// most, one after the other.
+const GRID_SPEEDS: usize = 2;
+const MOST_SPEEDS: usize = 4;
 
 /// Losses between so many mechanical points.
 fn variator_loss(around: &Around, count: usize) -> Cause {
     let node = shape("node_speed_m_s", "m/s").within(0.0, around.fastest_m_s);
     let mut terms = vec![positive("loss", "1", 0.1)];
     terms.extend(std::iter::repeat_n(node, count));
-    let nodes = chosen(&around.speeds_m_s, count).into_iter();
+    let of_grid = if count > GRID_SPEEDS { Vec::new() } else { chosen(&around.speeds_m_s, count) };
+    let nodes = of_grid.into_iter();
     let nodes = nodes.map(|speeds| speeds.into_iter().map(|speed| speed.max(0.5)).collect());
     cause(
         "variator_loss",
@@ -277,7 +279,8 @@ fn shift_transient(around: &Around, weight_n: f64, count: usize) -> Cause {
     let (from, to) = around.range_m_s;
     let place = |one: u8| from + (to - from) * (f64::from(one) + 0.5) / f64::from(PLACES[alone]);
     let speeds: Vec<f64> = (0..PLACES[alone]).map(place).collect();
-    let bells = WIDTHS[alone].iter().flat_map(|width| {
+    let widths = if count > GRID_SPEEDS { &[] } else { WIDTHS[alone] };
+    let bells = widths.iter().flat_map(|width| {
         chosen(&speeds, count).into_iter().map(move |speeds| {
             let width_m_s = width * speeds[0].max(1.0);
             std::iter::once(width_m_s).chain(speeds).collect()
@@ -552,7 +555,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
         );
     }
     if around.drives {
-        all.push(cause(
+        let mut lost = vec![cause(
             "driveline_efficiency",
             &[Kind::Motion, Kind::Battery, Kind::Fuel],
             vec![positive("loss", "1", 0.08)],
@@ -560,11 +563,16 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             &["tractive_force_n"],
             "a loss in the driveline in proportion to its load",
             "drive at the same speed with two loads",
-        ));
+        )];
         if !around.one_ratio {
-            all.extend((1..=MOST_MECHANICAL_POINTS).map(|count| variator_loss(around, count)));
-            all.extend((1..=MOST_SHIFTS).map(|count| shift_transient(around, weight, count)));
+            lost.extend((1..=MOST_SPEEDS).map(|count| variator_loss(around, count)));
+            lost.extend((1..=MOST_SPEEDS).map(|count| shift_transient(around, weight, count)));
         }
+        // A force that was measured at the wheels has most of them behind it already: what drives tells of them then.
+        if has("tractive_force_n") {
+            all.extend(lost.iter().cloned().map(Cause::upstream));
+        }
+        all.extend(lost);
     }
     if around.temperatures_k > 3.0 {
         all.push(

@@ -91,6 +91,7 @@ impl<'a> Stage<'a> {
             no_faults: case.no_faults.clone(),
             scale: case.scale,
             late_s: case.late_s,
+            late_powers: case.late_powers.clone(),
             logged_s: Vec::new(),
             sensors: case.sensors.clone(),
             only: None,

@@ -62,7 +62,9 @@ pub fn corrections(case: &Case, refined: &Refined) -> Vec<(String, f64, f64, f64
     };
     let way = case.faulty_scale().map(|scale| ("speed_scale", scale.value));
     let begins = case.late_s.map(|late_s| ("latency", late_s));
-    way.into_iter().chain(begins).chain(refined.artefacts()).filter_map(correction).collect()
+    let powers = case.late_powers.iter().map(|(name, late_s)| ((*name).to_owned(), *late_s, 1.0, 0.0));
+    let others = way.into_iter().chain(begins).chain(refined.artefacts()).filter_map(correction);
+    others.chain(powers).collect()
 }
 
 /// What every balance leaves over in every run.

@@ -158,6 +158,11 @@ pub fn fault(fault: &crate::faults::Fault) -> String {
              corrected.",
             with_interval(fault.size, fault.ci95.unwrap_or([fault.size; 2]), "")
         ),
+        "latency" if fault.channel != "speed_m_s" => format!(
+            "{channel} comes {} after what it is the power of, and no time constant explains that: a sensor or a bus that is late; \
+             it was corrected.",
+            with_interval(fault.size, fault.ci95.unwrap_or([fault.size; 2]), &fault.unit)
+        ),
         "latency" => format!(
             "{channel} goes on as it was for {} at the begin of the coast-downs: the sensor is late; it was corrected.",
             with_interval(fault.size, fault.ci95.unwrap_or([fault.size; 2]), &fault.unit)

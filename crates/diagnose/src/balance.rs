@@ -147,6 +147,8 @@ pub struct System {
     pub blocks_s: Vec<f64>,
     /// Variance that the mean of a row usually has by what lasts and is no physics, where that is known of a balance.
     pub usual: Vec<Option<f64>>,
+    /// Whether powers are made of nothing but motion.
+    pub of_motion: bool,
 }
 
 /// Rows wanted of a run.
@@ -198,7 +200,14 @@ impl System {
         let blocks_s: Vec<f64> = kept.iter().map(|kind| block_s(*kind)).collect();
         let usual = kept.iter().zip(&blocks_s).map(|(kind, block_s)| Some(unsteady(*kind, said)? / block_s));
         let usual = usual.collect();
-        let mut system = Self { kinds: kept, chunks: all, residual: Vec::new(), blocks_s, usual };
+        let mut system = Self {
+            kinds: kept,
+            chunks: all,
+            residual: Vec::new(),
+            blocks_s,
+            usual,
+            of_motion: is_of_motion(runs),
+        };
         system.residual = system.residual_of(runs, said);
         system.listen(said, fit);
         system
@@ -218,6 +227,15 @@ impl System {
         loudness::set(&mut self.chunks[own.clone()], fit, &self.residual[own.clone()], &power[own]);
     }
 
+    /// How the noise of a balance may come through: that of a power that is made of motion is the speed's more often than its own.
+    fn shapes_of(&self, kind: Kind) -> Vec<Shape> {
+        if self.of_motion && kind.is_power() {
+            vec![Shape::Differenced, Shape::Averaged]
+        } else {
+            vec![kind.shape()]
+        }
+    }
+
     /// How many rows there are.
     pub fn row_count(&self) -> usize {
         self.chunks.iter().map(|chunk| chunk.rows.len()).sum()
@@ -231,11 +249,6 @@ impl System {
     /// The balance of a chunk.
     pub fn kind(&self, chunk: &Chunk) -> Kind {
         self.kinds[chunk.balance]
-    }
-
-    /// Length of a block of a balance [s]; nothing where there is none.
-    pub fn block_s(&self, kind: Kind) -> f64 {
-        self.kinds.iter().position(|own| *own == kind).map_or(0.0, |number| self.blocks_s[number])
     }
 
     /// Whether there is this balance.
@@ -325,7 +338,7 @@ impl System {
             let weights: Vec<Option<&DVector<f64>>> =
                 own().map(|((index, _), _)| tails.map(|tails| tails.weights(index))).collect();
             let rows = Weighted { residuals: &residuals, weights: &weights };
-            likeliest(kind.shape(), most, self.usual[number], rows)
+            likeliest(&self.shapes_of(*kind), most, self.usual[number], rows)
         };
         let mut noises = Noises::normal(self.kinds.iter().enumerate().map(of).collect());
         if let Some(before) = before {
@@ -399,8 +412,23 @@ pub fn bearing(kinds: &[Kind], runs: &[Recorded], said: &[Said]) -> Vec<bool> {
     runs.iter().zip(said).map(of_run).collect()
 }
 
-/// Length of a block of a balance: short enough to see what happens, long enough to hold two samples.
+/// Whether no force was measured, so that powers are made of nothing but motion.
+fn is_of_motion(runs: &[Recorded]) -> bool {
+    runs.iter().all(|run| run.force_n.is_none())
+}
+
+/// Length of a block of a balance; of a power that is made of motion at least as long as the window over which its acceleration was
+/// smoothed, so that the noise of the speed comes through as that of differences.
 pub fn block_s(kind: Kind, runs: &[Recorded], rows: Rows) -> f64 {
+    let shortest_s = shortest_block_s(kind, runs, rows);
+    if !kind.is_power() || !is_of_motion(runs) {
+        return shortest_s;
+    }
+    runs.iter().map(|run| 2.0 * run.measured.how.smoothing_s).fold(shortest_s, f64::max)
+}
+
+/// Length of a block: short enough to see what happens, long enough to hold two samples.
+pub fn shortest_block_s(kind: Kind, runs: &[Recorded], rows: Rows) -> f64 {
     let mut durations: Vec<f64> = runs.iter().map(|run| run.measured.trace.duration_s()).collect();
     durations.sort_by(f64::total_cmp);
     let median = durations.get(durations.len() / 2).copied().unwrap_or(1.0);

@@ -25,9 +25,16 @@ pub struct Weighted<'a> {
     pub weights: &'a [Option<&'a DVector<f64>>],
 }
 
-/// The noise that makes residuals most likely; the process correlates neighbouring rows by `most` at most, and lasts with the
-/// variance that is `usual`, where any is.
-pub fn likeliest(shape: Shape, most: f64, usual: Option<f64>, rows: Weighted) -> Noise {
+/// The noise that makes residuals most likely, of any of these shapes; the process correlates neighbouring rows by `most` at most,
+/// and lasts with the variance that is `usual`, where any is.
+pub fn likeliest(shapes: &[Shape], most: f64, usual: Option<f64>, rows: Weighted) -> Noise {
+    let of = |shape: &Shape| of_shape(*shape, most, usual, rows);
+    let best = shapes.iter().map(of).min_by(|one, other| one.0.total_cmp(&other.0));
+    best.map_or(Noise { shape: Shape::Averaged, sensor: 1.0, process: 0.0, persistence: 0.0 }, |best| best.1)
+}
+
+/// The same of one shape, and its deviance.
+fn of_shape(shape: Shape, most: f64, usual: Option<f64>, rows: Weighted) -> (f64, Noise) {
     let nothing = Noise { shape, sensor: 1.0, process: 0.0, persistence: 0.0 };
     let mut best = (f64::INFINITY, nothing, (0.0, 0.0));
     let mut consider = |places: &[Place]| {
@@ -62,7 +69,7 @@ pub fn likeliest(shape: Shape, most: f64, usual: Option<f64>, rows: Weighted) ->
         let able = |(share, persistence): &Place| *share > 0.0 && *persistence <= most;
         place = consider(&around.filter(able).collect::<Vec<Place>>());
     }
-    best.1
+    (best.0, best.1)
 }
 
 impl Weighted<'_> {
@@ -147,7 +154,7 @@ mod tests {
         let all = made(noise, 40, 140);
         let residuals: Vec<&DVector<f64>> = all.iter().collect();
         let rows = Weighted { residuals: &residuals, weights: &vec![None; residuals.len()] };
-        let found = likeliest(Shape::Differenced, 1.0, None, rows);
+        let found = likeliest(&[Shape::Differenced], 1.0, None, rows);
         assert!((found.sensor / 4.0 - 1.0).abs() < 0.15, "{found:?}");
         assert!((found.process - 1.0).abs() < 0.4 && (found.persistence - 0.8).abs() < 0.12, "{found:?}");
     }

@@ -7,7 +7,7 @@
 //! for loss maps as sums of k Tᵐ ωⁿ, those of the inverter and of a weakened field among them.
 
 use crate::Case;
-use crate::balance::{Kind, System, longest_renewal_s};
+use crate::balance::{Kind, System, longest_renewal_s, shortest_block_s};
 use crate::gram::Column;
 use crate::recorded::Recorded;
 use crate::rows::Chunk;
@@ -67,10 +67,11 @@ pub fn slow_powers(case: &Case, system: &System) -> Vec<Small> {
     const LATE: [(&str, f64); 2] = [("late_power", 1.0), ("later_power", 4.0)];
     /// Usual share of the power that is late by as much.
     const SHARE: f64 = 0.5;
+    let block_s = |kind| shortest_block_s(kind, &case.runs, case.rows);
     let of = |(id, blocks): (&'static str, f64)| {
         let column = system.column(|kind| {
             let of_run = |(run, said): (&Recorded, &Said)| match made_of_motion(kind, run, said) {
-                Some(power) => late(run.measured.trace.time_s(), &power, blocks * system.block_s(kind)),
+                Some(power) => late(run.measured.trace.time_s(), &power, blocks * block_s(kind)),
                 None => Vec::new(),
             };
             case.runs.iter().zip(&case.nominal).map(of_run).collect()

@@ -17,11 +17,13 @@ use nalgebra::DVector;
 /// Rows that share no block lie so far apart.
 const APART: usize = 2;
 /// Powers at which the noise has grown by √2 that are tried, as shares of the usual power.
-const KNEES: [f64; 5] = [0.1, 0.2, 0.4, 0.8, 1.6];
+const KNEES: [f64; 4] = [0.2, 0.4, 0.8, 1.6];
 /// Growth of ln p for each second difference that is independent of others, of which every third is: one of many models that no
 /// chance should make.
 const CLEARLY: f64 = 20.0;
 const INDEPENDENT: f64 = 1.0 / 3.0;
+/// Less than this share of the usual power is that of an engine that idles or is cut off.
+const CUT_OFF: f64 = 0.1;
 /// Fewer rows tell nothing of how noise grows.
 const LEAST_ROWS: usize = 100;
 
@@ -44,6 +46,9 @@ pub fn set(chunks: &mut [Chunk], fit: &[bool], residual: &[DVector<f64>], power:
     if pairs.len() < LEAST_ROWS {
         return;
     }
+    let whole_w = (pairs.iter().map(|(_, square)| square).sum::<f64>() / pairs.len() as f64).sqrt();
+    // An engine that is cut off has no noise at all, and is none that is quiet.
+    pairs.retain(|(_, square)| square.sqrt() > CUT_OFF * whole_w);
     let usual_w = (pairs.iter().map(|(_, square)| square).sum::<f64>() / pairs.len() as f64).sqrt();
     let grown =
         |knee: f64| (knee, likelihood(&pairs, |square| (1.0 + square / (knee * usual_w).powi(2)).sqrt()));

@@ -149,6 +149,8 @@ pub struct System {
     pub usual: Vec<Option<f64>>,
     /// Whether powers are made of nothing but motion.
     pub of_motion: bool,
+    /// Whether what a line between fuel and work leaves grows with its power.
+    pub bent: bool,
 }
 
 /// Rows wanted of a run.
@@ -207,24 +209,44 @@ impl System {
             blocks_s,
             usual,
             of_motion: is_of_motion(runs),
+            bent: false,
         };
         system.residual = system.residual_of(runs, said);
-        system.listen(said, fit);
+        system.listen(runs, said, fit);
         system
     }
 
-    /// Lets rows of fuel be as loud as they show themselves.
-    fn listen(&mut self, said: &[Said], fit: &[bool]) {
+    /// Lets rows of fuel be as loud as they show themselves, by their power or by their speed.
+    fn listen(&mut self, runs: &[Recorded], said: &[Said], fit: &[bool]) {
         let Some(number) = self.kinds.iter().position(|kind| *kind == Kind::Fuel) else { return };
-        let power = self.column(|kind| match kind {
-            Kind::Fuel => said.iter().map(Said::fuel_w).collect(),
-            _ => vec![Vec::new(); said.len()],
-        });
-        let of_fuel: Vec<usize> =
-            (0..self.chunks.len()).filter(|index| self.chunks[*index].balance == number).collect();
-        let (Some(first), Some(last)) = (of_fuel.first(), of_fuel.last()) else { return };
-        let own = *first..last + 1;
-        loudness::set(&mut self.chunks[own.clone()], fit, &self.residual[own.clone()], &power[own]);
+        let column = |of: &dyn Fn(usize) -> Vec<f64>| {
+            self.column(|kind| match kind {
+                Kind::Fuel => (0..said.len()).map(of).collect(),
+                _ => vec![Vec::new(); said.len()],
+            })
+        };
+        let power = column(&|run| said[run].fuel_w());
+        let speed = column(&|run| runs[run].motion.value.iter().map(|speed| speed.abs()).collect());
+        let of_fuel = |index: &usize| self.chunks[*index].balance == number;
+        let (Some(first), Some(last)) =
+            ((0..self.chunks.len()).find(of_fuel), (0..self.chunks.len()).rfind(of_fuel))
+        else {
+            return;
+        };
+        let own = first..last + 1;
+        let grown = |size: &Column| {
+            let (chunks, left) = (&self.chunks[own.clone()], &self.residual[own.clone()]);
+            loudness::grown(chunks, fit, left, &power[own.clone()], &size[own.clone()])
+        };
+        let by_speed = if self.of_motion { grown(&speed) } else { None };
+        let by_power = grown(&power);
+        let gain = |one: &Option<(f64, Vec<Vec<f64>>)>| one.as_ref().map_or(0.0, |one| one.0);
+        self.bent = gain(&by_power) > gain(&by_speed);
+        if let Some((_, loud)) = if self.bent { by_power } else { by_speed } {
+            for (chunk, loud) in self.chunks[own].iter_mut().zip(loud) {
+                chunk.loudness = loud;
+            }
+        }
     }
 
     /// How the noise of a balance may come through: that of a power that is made of motion is the speed's more often than its own.
@@ -420,20 +442,28 @@ fn is_of_motion(runs: &[Recorded]) -> bool {
 /// Length of a block of a balance; of a power that is made of motion at least as long as the window over which its acceleration was
 /// smoothed, so that the noise of the speed comes through as that of differences.
 pub fn block_s(kind: Kind, runs: &[Recorded], rows: Rows) -> f64 {
+    /// In a short run each step of the force that was smoothed over would count in many of so few rows.
+    const FEWEST_ROWS: f64 = 50.0;
     let shortest_s = shortest_block_s(kind, runs, rows);
     if !kind.is_power() || !is_of_motion(runs) {
         return shortest_s;
     }
-    runs.iter().map(|run| 2.0 * run.measured.how.smoothing_s).fold(shortest_s, f64::max)
+    let smoothed_s = runs.iter().map(|run| 2.0 * run.measured.how.smoothing_s).fold(shortest_s, f64::max);
+    if median_duration_s(runs) < FEWEST_ROWS * smoothed_s { shortest_s } else { smoothed_s }
+}
+
+/// Length of a run in the middle of all [s].
+fn median_duration_s(runs: &[Recorded]) -> f64 {
+    let mut durations: Vec<f64> = runs.iter().map(|run| run.measured.trace.duration_s()).collect();
+    durations.sort_by(f64::total_cmp);
+    durations.get(durations.len() / 2).copied().unwrap_or(1.0)
 }
 
 /// Length of a block: short enough to see what happens, long enough to hold two samples.
 pub fn shortest_block_s(kind: Kind, runs: &[Recorded], rows: Rows) -> f64 {
-    let mut durations: Vec<f64> = runs.iter().map(|run| run.measured.trace.duration_s()).collect();
-    durations.sort_by(f64::total_cmp);
-    let median = durations.get(durations.len() / 2).copied().unwrap_or(1.0);
+    let median = median_duration_s(runs);
     let period = kind.channels().iter().map(|name| longest_renewal_s(runs, name)).fold(0.0, f64::max);
-    let whole: f64 = durations.iter().sum();
+    let whole: f64 = runs.iter().map(|run| run.measured.trace.duration_s()).sum();
     let most = match (rows, kind) {
         (_, Kind::Parity | Kind::Slip | Kind::Motion) => MOST_ROWS_OF_MOTION,
         (Rows::Few, _) => FEW_ROWS,

@@ -90,7 +90,7 @@ pub fn slow_powers(case: &Case, system: &System) -> Vec<Small> {
 pub fn bent_engine(case: &Case, system: &System, free: &[Column]) -> Vec<Small> {
     /// Of the power of the fuel, both as root mean squares.
     const BENT: f64 = 0.03;
-    if system.chunks.iter().all(|chunk| chunk.loudness.is_empty()) {
+    if !system.bent {
         return Vec::new();
     }
     let column = |of: fn(f64, f64) -> f64| {

@@ -65,8 +65,12 @@ impl Noise {
     /// ln of how likely a world is from the start that is as unsteady as the process makes it, where `usual` is the variance
     /// that lasting unsteadiness usually has in the mean of a row: by heavy tails, so that a large one costs little.
     pub fn prior(&self, usual: Option<f64>) -> f64 {
-        let lasting = self.process * (1.0 + self.persistence) / (1.0 - self.persistence);
-        usual.map_or(0.0, |usual| -(lasting / usual).ln_1p())
+        usual.map_or(0.0, |usual| -(self.lasting() / usual).ln_1p())
+    }
+
+    /// Variance that what lasts has in the mean of a row.
+    pub fn lasting(&self) -> f64 {
+        self.process * (1.0 + self.persistence) / (1.0 - self.persistence)
     }
 
     /// Covariance of so many rows that follow each other.

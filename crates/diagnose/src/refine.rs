@@ -8,12 +8,13 @@ use crate::profile::Function;
 use crate::recorded::Recorded;
 use crate::regeneration::limit_w;
 use crate::said::{Said, said};
-use crate::search::{Accepted, Found};
+use crate::search::{Accepted, Found, Rival};
 use crate::sensors::is_no_fault;
 use crate::trial::{Pool, Trial, for_run};
 use crate::widths::{Beyond, Widths, widths};
 use crate::{Case, DiagnoseError, Kind, System};
 use headland_calibrate::fit::{Estimate, Fit, Parameter, Residuals, fit};
+use headland_calibrate::statistics::median;
 use headland_scenario::Scenario;
 
 /// Half the width of a 95 % interval, in standard deviations.
@@ -264,12 +265,36 @@ pub fn spells(case: &Case, system: &System, events: &[Event], refined: &mut Refi
     for (id, events) in named(&case.runs, events) {
         let limit = if id == "braking" { limit_w(case, &events) } else { None };
         let cured = spelt(if limit.is_some() { "regeneration_limit" } else { id }, events, balance);
+        let mut cured = cured;
+        if limit.is_none() && id == "braking" && is_gentle(case, &cured.events) {
+            cured.accepted.rivals.extend(pull_instead(case, &cured.accepted));
+        }
         let values = limit.map(|(value, sd)| (value, [value - HALF_95 * sd, value + HALF_95 * sd]));
         refined.causes.push(match values {
             Some(value) => Cured { values: vec![value], ..cured },
             None => cured,
         });
     }
+}
+
+/// Whether spells hold a vehicle back as gently and as long as an implement on the ground does, so that nothing tells them from a
+/// foot on the brake.
+fn is_gentle(case: &Case, events: &[Event]) -> bool {
+    /// Drivers brake harder [m/s²], or not as long [s].
+    const GENTLE_M_S2: f64 = 0.5;
+    const LONG_S: f64 = 5.0;
+    let slows = |event: &Event| {
+        case.nominal[event.run].first_mass_kg().map_or(f64::INFINITY, |mass_kg| event.force_n / mass_kg)
+    };
+    let lasts: Vec<f64> = events.iter().map(|event| event.to_s - event.from_s).collect();
+    median(&lasts) > LONG_S && median(&events.iter().map(slows).collect::<Vec<_>>()) < GENTLE_M_S2
+}
+
+/// A pull in the place of brakes, which says as much.
+fn pull_instead(case: &Case, brakes: &Accepted) -> Option<Rival> {
+    let pull = |cause: &Cause| cause.id == "drawbar_load" && cause.window().is_none() && cause.run.is_none();
+    let cause = case.causes.iter().position(pull)?;
+    Some(Rival { cause, gain: brakes.gain, squared_correlation: 1.0, free: Vec::new() })
 }
 
 /// Spells of one name as a cause.

@@ -187,6 +187,8 @@ impl<'a> State<'a> {
     pub fn functions_possible(&self, stand: &Stand) -> bool {
         const SIGMAS: f64 = 2.0;
         const SLACK: f64 = 0.1;
+        /// Where runs differ, what all of them share may lie in other parameters.
+        const SLACK_BY_RUN: f64 = 0.4;
         const MOST_BEYOND: f64 = 0.05;
         stand.parts.iter().zip(&stand.functions).all(|(part, function)| {
             let Some(function) = function else { return true };
@@ -196,8 +198,9 @@ impl<'a> State<'a> {
             let all = || function.values.iter().flat_map(|(values, sds)| values.iter().zip(sds.iter()));
             let reach = all().fold(f64::NEG_INFINITY, |most, (value, _)| most.max(*value))
                 - all().fold(f64::INFINITY, |least, (value, _)| least.min(*value));
+            let slack = if self.cause(&part.trial).by_run { SLACK_BY_RUN } else { SLACK };
             let beyond = all().filter(|(value, sd)| {
-                let (value, known) = (even + **value, SIGMAS * **sd + SLACK * reach);
+                let (value, known) = (even + **value, SIGMAS * **sd + slack * reach);
                 value + known < term.low || value - known > term.high
             });
             beyond.count() as f64 <= MOST_BEYOND * all().count() as f64

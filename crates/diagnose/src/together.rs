@@ -3,7 +3,7 @@
 
 use crate::catalogue::{Cause, Form};
 use crate::look::MANY_ROWS;
-use crate::noise::Noises;
+use crate::noise::{Noise, Noises};
 use crate::profile::COARSE;
 use crate::search::MOST_CAUSES;
 use crate::state::{Part, Stand, State};
@@ -17,6 +17,9 @@ const BEAM_OF_PLACES: usize = 3;
 /// Noise that neighbouring rows show is less than all that is left where its variance is below this share of it.
 const LESS: f64 = 0.7;
 
+/// And where what lasts of it is so many times what is usual.
+const UNUSUAL: f64 = 100.0;
+
 /// A set of causes, and how good it is at a noise.
 type Scored = (f64, Vec<Part>);
 
@@ -28,8 +31,12 @@ impl State<'_> {
             return Vec::new();
         }
         let noises = self.quiet(start);
-        let pairs = noises.each.iter().zip(&start.noises.each);
-        if !pairs.into_iter().any(|(quiet, loud)| quiet.sd().powi(2) < LESS * loud.sd().powi(2)) {
+        let pairs = noises.each.iter().zip(&start.noises.each).zip(&self.system.usual);
+        let hides = |((quiet, loud), usual): ((&Noise, &Noise), &Option<f64>)| {
+            let lasting = usual.is_some_and(|usual| loud.lasting() > UNUSUAL * usual);
+            lasting || quiet.sd().powi(2) < LESS * loud.sd().powi(2)
+        };
+        if !pairs.into_iter().any(hides) {
             return Vec::new();
         }
         let mut all = self.grown_from(start.parts.clone(), &noises, banned, BEAM);

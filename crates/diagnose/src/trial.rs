@@ -58,8 +58,8 @@ const NUISANCE_STEP: f64 = 0.3;
 const CAUSE_STEP: f64 = 0.5;
 /// What is left of a corrected fault, as a share of its usual size.
 const REST: f64 = 0.1;
-/// What a map of the ground is everywhere, as a share of what it is in places: that is the soil's own.
-const LEVEL: f64 = 0.1;
+/// What a map is everywhere, as a share of what it is in places: a level belongs to the soil, and a slope all along to the lane.
+const LEVEL: f64 = 0.3;
 /// A column weaker than this share of the residual says nothing.
 const WEAKEST: f64 = 1e-7;
 
@@ -134,8 +134,8 @@ pub fn add_trial(
         } else {
             effect(case, system, cause, step, &|run| signature(cause, term, step, shape, run))?
         };
-        let scale =
-            if cause.id == "soft_ground" && cause.is_function() { LEVEL * part.scale } else { part.scale };
+        let map = cause.form == Form::OverPosition;
+        let scale = if map { LEVEL * part.scale } else { part.scale };
         found.push(Part { column, scale, term });
     }
     let beside = found.first().map_or_else(Vec::new, |one| with_speed(case, system, cause, &one.column));

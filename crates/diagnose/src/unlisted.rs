@@ -28,6 +28,8 @@ const PLAINER: f64 = 4.5;
 const DOUBT: f64 = 0.5;
 /// A law works in at least this share of the rows, by the participation ratio of its squares.
 const EVERYWHERE: f64 = 0.04;
+/// And in so many runs, by that of the runs' sums.
+const SHARED: f64 = 1.2;
 /// Causes that hide each other bring beside one another up to so many times what the best of them brings alone.
 const HARDLY: f64 = 3.0;
 
@@ -329,20 +331,24 @@ impl State<'_> {
         parts.iter().map(|part| self.cause(&part.trial).numbers()).sum()
     }
 
-    /// Whether the laws of a set are at work in more than a few rows.
+    /// Whether the laws of a set are at work in more than a few rows, and in more than one run where there are several.
     fn works_widely(&self, stand: &Stand) -> bool {
         let laws = stand.parts.iter().filter(|part| self.cause(&part.trial).law.is_some());
         laws.into_iter().all(|part| {
             let effect = stand.effect(self, part);
             let (mut squares, mut fourths, mut count) = (0.0, 0.0, 0usize);
+            let mut of_runs = vec![0.0; self.fit.len()];
             for (chunk, rows) in self.system.chunks.iter().zip(&effect) {
                 if self.fit[chunk.run] && self.system.kind(chunk).among(self.cause(&part.trial).balances) {
                     squares += rows.norm_squared();
+                    of_runs[chunk.run] += rows.norm_squared();
                     fourths += rows.iter().map(|value| value.powi(4)).sum::<f64>();
                     count += rows.len();
                 }
             }
-            squares * squares > EVERYWHERE * count as f64 * fourths
+            let several = self.fit.iter().filter(|fit| **fit).count() > 2;
+            let shared = squares * squares > SHARED * of_runs.iter().map(|own| own * own).sum::<f64>();
+            squares * squares > EVERYWHERE * count as f64 * fourths && (shared || !several)
         })
     }
 
@@ -502,23 +508,78 @@ fn put(case: &mut Case, pool: &mut Pool, cause: Cause, rows: Column) -> Part {
     Part { trial, spread: None }
 }
 
+/// A small loss of a drive as a formula.
+struct SmallLaw {
+    /// The loss.
+    small: &'static str,
+    text: &'static str,
+    /// Constants of the formula: name, unit, value, and to which power it stands in it.
+    units: &'static [(&'static str, &'static str, f64, i32)],
+    depends_on: &'static [&'static str],
+}
+
+/// A speed and a force at which a loss is told.
+const V1: (&str, &str, f64, i32) = ("v1_m_s", "m/s", 10.0, 1);
+const F1: (&str, &str, f64, i32) = ("f1_n", "N", 1000.0, 1);
+const V1_SQUARED: (&str, &str, f64, i32) = (V1.0, V1.1, V1.2, 2);
+const F1_SQUARED: (&str, &str, f64, i32) = (F1.0, F1.1, F1.2, 2);
+const BOTH: &[&str] = &["tractive_force_n", "speed_m_s"];
+
+/// Those that nothing listed says; a loss in proportion to the power of the drive is one of its efficiency.
+const SMALL_LAWS: [SmallLaw; 4] = [
+    SmallLaw {
+        small: SPEED_SQUARED,
+        text: "(v / v1_m_s)^2",
+        units: &[V1_SQUARED],
+        depends_on: &["speed_m_s"],
+    },
+    SmallLaw {
+        small: "battery_force_squared",
+        text: "(F_drive / f1_n)^2",
+        units: &[F1_SQUARED],
+        depends_on: &["tractive_force_n"],
+    },
+    SmallLaw {
+        small: "battery_power_speed",
+        text: "abs(F_drive / f1_n) * (v / v1_m_s)^2",
+        units: &[F1, V1_SQUARED],
+        depends_on: BOTH,
+    },
+    SmallLaw {
+        small: "battery_power_force",
+        text: "(F_drive / f1_n)^2 * abs(v / v1_m_s)",
+        units: &[F1_SQUARED, V1],
+        depends_on: BOTH,
+    },
+];
+
+impl SmallLaw {
+    /// What a loss of one makes where every ratio is one [W].
+    fn watts(&self) -> f64 {
+        self.units.iter().map(|(_, _, value, power)| value.powi(*power)).product()
+    }
+
+    fn constants_text(&self, power_w: f64) -> String {
+        let others = self.units.iter().map(|(name, _, value, _)| format!(", \"{name}\": {value:?}"));
+        format!("{{\"a1_w\": {power_w:?}{}}}", others.collect::<String>())
+    }
+}
+
 /// A loss of an electric drive that is free because it is small, and is not: a consumer of its shape, which no search can
 /// find beside it.
 fn outgrown(case: &mut Case, pool: &mut Pool, found: &Found) -> Option<Part> {
     /// What is so many times its usual size is not small.
     const MOST: f64 = 4.0;
-    /// The speed at which it is told [m/s].
-    const TOLD_M_S: f64 = 10.0;
-    /// A term, a square and a constant.
-    const COST: f64 = 7.5;
-    let (_, small) = pool.small.iter().find(|(id, _)| *id == SPEED_SQUARED)?;
-    let position = found.used.iter().position(|used| used == small)?;
-    let value = found.estimate.beta[position];
-    if value < MOST * pool.sd[*small] {
-        return None;
-    }
-    let sd = found.estimate.covariance[(position, position)].sqrt();
-    let watts = TOLD_M_S * TOLD_M_S;
+    let of = |law: &'static SmallLaw| {
+        let (_, small) = pool.small.iter().find(|(id, _)| *id == law.small)?;
+        let position = found.used.iter().position(|used| used == small)?;
+        let value = found.estimate.beta[position];
+        let sd = found.estimate.covariance[(position, position)].sqrt();
+        (value >= MOST * pool.sd[*small]).then_some((value / pool.sd[*small], law, *small, value, sd))
+    };
+    let all = SMALL_LAWS.iter().filter_map(of);
+    let (_, law, small, value, sd) = all.max_by(|one, other| one.0.total_cmp(&other.0))?;
+    let watts = law.watts();
     let constant = |name: &str, unit: &str, value: f64, sd: Option<f64>| headland_symbolic::Constant {
         name: name.to_owned(),
         unit: unit.to_owned(),
@@ -528,17 +589,17 @@ fn outgrown(case: &mut Case, pool: &mut Pool, found: &Found) -> Option<Part> {
     let power_w = value * watts;
     let text = LawText {
         role: "auxiliary_power",
-        text: "a1_w * (v / v1_m_s)^2".to_owned(),
-        constants_text: format!("{{\"a1_w\": {power_w:?}, \"v1_m_s\": {TOLD_M_S:?}}}"),
-        constants: vec![
-            constant("a1_w", "W", power_w, Some(sd * watts)),
-            constant("v1_m_s", "m/s", TOLD_M_S, None),
-        ],
-        depends_on: vec!["speed_m_s"],
+        text: format!("a1_w * {}", law.text),
+        constants_text: law.constants_text(power_w),
+        constants: std::iter::once(constant("a1_w", "W", power_w, Some(sd * watts)))
+            .chain(law.units.iter().map(|(name, unit, value, _)| constant(name, unit, *value, None)))
+            .collect(),
+        depends_on: law.depends_on.to_vec(),
         terms: 1,
-        cost: COST,
+        // It was free from the start, and nothing was chosen.
+        cost: 0.0,
     };
-    let column = pool.columns[*small].iter().map(|rows| rows * value).collect();
+    let column = pool.columns[small].iter().map(|rows| rows * value).collect();
     Some(put(case, pool, Cause::of_law(text, Kind::Battery), column))
 }
 

@@ -227,7 +227,8 @@ fn is_slight(case: &Case, best: &Proven, place: usize) -> bool {
     const OF_MANY: f64 = 40.0;
     let trial = &best.found.stand.parts[place].trial;
     let own = best.refined.causes.iter().find(|cured| cured.accepted.trial.columns == trial.columns);
-    case.causes[trial.cause].law.is_some() && own.is_some_and(|cured| cured.accepted.gain < OF_MANY)
+    let chosen = case.causes[trial.cause].law.as_ref().is_some_and(|law| law.cost > 0.0);
+    chosen && own.is_some_and(|cured| cured.accepted.gain < OF_MANY)
 }
 
 /// Whether a listed cause of the world has hardly more evidence than the best of many has by chance.

@@ -249,31 +249,31 @@ impl Model {
     ) -> Instant {
         let at = (point, command, given);
         let follows = self.effects.iter().any(|effect| effect.plugin.follows_acceleration());
-        let acceleration_m_s2 = if follows {
-            self.balance_at::<false, WHOLE>(at, 0.0, layout, slots, states, rates, powers, scratch)
-                .acceleration_m_s2
+        let made = if follows {
+            let first = self.balance_at::<false, WHOLE>(
+                at,
+                (0.0, 0.0),
+                layout,
+                slots,
+                states,
+                rates,
+                powers,
+                scratch,
+            );
+            (first.acceleration_m_s2, first.delivery.force_n)
         } else {
-            0.0
+            (0.0, 0.0)
         };
-        self.balance_at::<DECIDES, WHOLE>(
-            at,
-            acceleration_m_s2,
-            layout,
-            slots,
-            states,
-            rates,
-            powers,
-            scratch,
-        )
+        self.balance_at::<DECIDES, WHOLE>(at, made, layout, slots, states, rates, powers, scratch)
     }
 
-    /// As [`Model::balance`], with what effects are told of the acceleration.
+    /// As [`Model::balance`], with what effects are told of the acceleration and of the force of the drive.
     #[allow(clippy::too_many_arguments, reason = "as in the balance")]
     #[inline(always)]
     fn balance_at<const DECIDES: bool, const WHOLE: bool>(
         &self,
         (point, command, given): (Point, Command, &Given),
-        acceleration_m_s2: f64,
+        (acceleration_m_s2, tractive_force_n): (f64, f64),
         layout: &Layout,
         slots: &Slots,
         states: &[f64],
@@ -284,6 +284,7 @@ impl Model {
         let Point { speed_m_s, direction, .. } = point;
         let mut situation = self.situation(point, command, given);
         situation.acceleration_m_s2 = acceleration_m_s2;
+        situation.tractive_force_n = tractive_force_n;
         let sums = self.sums(&mut situation, given, layout, states, rates, scratch);
         let place = situation.place;
 

@@ -58,7 +58,7 @@ impl<'a> Machine<'a> {
         }
         let point = Point { time_s: self.time_s, position_m, speed_m_s, direction: sign(speed_m_s) };
         let (instant, borne) = self.model.borne(
-            (&motion, point),
+            (&motion, point, self.borne.delivered_n),
             command,
             &given,
             (&self.layout, &self.slots),
@@ -172,7 +172,7 @@ impl Model {
     #[allow(clippy::too_many_arguments, reason = "as in the balance, whose other branch this is")]
     fn borne(
         &self,
-        (motion, point): (&Motion, Point),
+        (motion, point, delivered_n): (&Motion, Point, f64),
         command: Command,
         given: &Given,
         (layout, slots): (&Layout, &Slots),
@@ -183,7 +183,9 @@ impl Model {
     ) -> (Instant, Borne) {
         let mut situation = self.situation(point, command, given);
         situation.place = motion.place;
+        // As they were in the last step.
         situation.acceleration_m_s2 = motion.acceleration_m_s2.unwrap_or(0.0);
+        situation.tractive_force_n = delivered_n;
         let sums = self.sums(&mut situation, given, layout, states, rates, scratch);
         let weight_n = situation.mass_kg * self.gravity_m_s2;
         let air_n = self.air_n(&situation);

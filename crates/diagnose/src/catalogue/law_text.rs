@@ -5,9 +5,10 @@ use crate::balance::Kind;
 use headland_symbolic::Target;
 
 /// Channels that the variables of a formula are read from.
-pub const CHANNELS: [(&str, &str); 10] = [
+pub const CHANNELS: [(&str, &str); 11] = [
     ("v", "speed_m_s"),
     ("acceleration", "acceleration_m_s2"),
+    ("F_drive", "tractive_force_n"),
     ("x", "position_m"),
     ("t", "time_s"),
     ("heading", "heading_rad"),

@@ -87,7 +87,7 @@ pub fn powers(all: &mut Vec<Cause>, around: &Around) {
             "repeat the cycle with the engine warm",
         )
         .shaped(
-            [30.0, 60.0, 120.0, 240.0, 480.0, 960.0]
+            [30.0, 60.0, 90.0, 150.0, 240.0, 480.0, 960.0]
                 .into_iter()
                 .filter(|tau| (fastest_s..=slowest_s.max(fastest_s)).contains(tau))
                 .map(|tau| vec![tau])

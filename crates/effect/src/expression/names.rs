@@ -15,13 +15,17 @@ const fn variable(name: &'static str, unit: &'static str, of: fn(&Situation) -> 
     Variable { name, unit, of }
 }
 
-/// The one that only a power may name: a force makes it.
-pub(super) const ACCELERATION: &str = "acceleration";
+/// Those that only a power may name: the acceleration, which forces make, and the force of the drive, which is not known before
+/// them.
+pub(super) const MADE: [&str; 2] = [ACCELERATION, DRIVE];
+const ACCELERATION: &str = "acceleration";
+const DRIVE: &str = "F_drive";
 
 /// Every variable. Signs are those of [`Situation`]; the cross wind counts from the right.
-pub(super) const VARIABLES: [Variable; 18] = [
+pub(super) const VARIABLES: [Variable; 19] = [
     variable("v", "m/s", |at| at.speed_m_s),
     variable(ACCELERATION, "m/s²", |at| at.acceleration_m_s2),
+    variable(DRIVE, "N", |at| at.tractive_force_n),
     variable("x", "m", |at| at.position_m),
     variable("t", "s", |at| at.time_s),
     variable("heading", "rad", |at| at.place.heading_rad),

@@ -12,7 +12,7 @@
 use super::dimension::Dimension;
 use super::fault::Fault;
 use super::lexer::{Kind, Token, next};
-use super::names::{ACCELERATION, COMPARISONS, FUNCTIONS, Function, Rule, VARIABLES, power};
+use super::names::{COMPARISONS, FUNCTIONS, Function, MADE, Rule, VARIABLES, power};
 use super::program::{Program, Step};
 use super::units::{Operand, same_unit};
 use headland_units::parse_unit;
@@ -37,21 +37,21 @@ pub(super) struct Compiled {
     /// A lone 0, which has every unit.
     pub any_unit: bool,
     pub uses: Vec<bool>,
-    /// Where it names the acceleration, if it does.
-    pub acceleration: Option<Range<usize>>,
+    /// Where it names what forces make, if it does.
+    pub made: Option<Range<usize>>,
 }
 
 /// Compiles a text.
 pub(super) fn compile(text: &str, constants: &[Constant]) -> Result<Compiled, Fault> {
     let uses = vec![false; constants.len()];
     let (token, program) = (next(text, 0), Program::default());
-    let mut parser = Parser { text, constants, token, end: 0, program, uses, acceleration: None, depth: 0 };
+    let mut parser = Parser { text, constants, token, end: 0, program, uses, made: None, depth: 0 };
     let whole = parser.comparison()?;
     if parser.token.kind != Kind::End {
         return Err(parser.unexpected("an operator or the end"));
     }
-    let Parser { program, uses, acceleration, .. } = parser;
-    Ok(Compiled { program, dimension: whole.dimension, any_unit: whole.is_zero(), uses, acceleration })
+    let Parser { program, uses, made, .. } = parser;
+    Ok(Compiled { program, dimension: whole.dimension, any_unit: whole.is_zero(), uses, made })
 }
 
 struct Parser<'a> {
@@ -63,7 +63,7 @@ struct Parser<'a> {
     end: usize,
     program: Program,
     uses: Vec<bool>,
-    acceleration: Option<Range<usize>>,
+    made: Option<Range<usize>>,
     depth: usize,
 }
 
@@ -206,8 +206,8 @@ impl<'a> Parser<'a> {
         let Some(variable) = VARIABLES.iter().find(|variable| variable.name == name) else {
             return Err(Fault::unknown(self.text, span, self.constants));
         };
-        if variable.name == ACCELERATION {
-            self.acceleration.get_or_insert(span.clone());
+        if MADE.contains(&variable.name) {
+            self.made.get_or_insert(span.clone());
         }
         self.emit(Step::Load(variable.of), span.clone())?;
         Ok(operand(parse_unit(variable.unit).map_or(Dimension::NONE, |unit| Dimension::of(&unit))))

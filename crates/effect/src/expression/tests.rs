@@ -162,7 +162,7 @@ fn syntax_errors_name_the_character_and_what_was_expected() {
         ("abs * 2", "`*` at character 5, expected `(` behind the function `abs`"),
         (
             "f_n * ρρ + 2",
-            "`ρρ` at character 7, expected a constant of `constants` or one of v acceleration x",
+            "`ρρ` at character 7, expected a constant of `constants` or one of v acceleration F_drive x",
         ),
         ("f_n * temperatur", "is `temperature` meant?"),
         ("f_n * ln(-1)", "`ln(-1)` at character 7, which is NaN, expected a finite number"),
@@ -232,6 +232,10 @@ fn a_power_may_name_the_acceleration_and_a_force_may_not() {
     let power = "(auxiliary_power: \"k_kg * abs(acceleration) * v\", constants: {\"k_kg\": 100.0})";
     assert!((act::<Expression>(power, &situation()).auxiliary_power_w - 700.0).abs() < 1e-9);
     assert!(build::<Expression>(power).unwrap().follows_acceleration());
+    let copper = "(auxiliary_power: \"p_w * (F_drive / f_n)^2\", constants: {\"p_w\": 80.0, \"f_n\": 500.0})";
+    let pulling = Situation { tractive_force_n: 1000.0, ..situation() };
+    assert!((act::<Expression>(copper, &pulling).auxiliary_power_w - 320.0).abs() < 1e-9);
+    assert!(build::<Expression>(&copper.replace("auxiliary_power", "resistance")).is_err());
     let force = "(force: \"k_kg * acceleration\", constants: {\"k_kg\": 5.0})";
     let message = build::<Expression>(force).unwrap_err();
     assert!(

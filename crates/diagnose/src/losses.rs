@@ -88,12 +88,14 @@ pub fn slow_powers(case: &Case, system: &System) -> Vec<Small> {
 /// Source: second-order terms of fuel maps; Guzzella and Onder, *Introduction to Modeling and Control of Internal Combustion Engine
 /// Systems* (2010), section 2.5.
 pub fn bent_engine(case: &Case, system: &System, free: &[Column]) -> Vec<Small> {
+    /// Of a power and a speed.
+    type Product = fn(f64, f64) -> f64;
     /// Of the power of the fuel, both as root mean squares.
     const BENT: f64 = 0.03;
     if !system.bent {
         return Vec::new();
     }
-    let column = |of: fn(f64, f64) -> f64| {
+    let column = |of: Product| {
         system.column(|kind| {
             let of_run = |(run, said): (&Recorded, &Said)| match kind {
                 Kind::Fuel => {
@@ -109,15 +111,14 @@ pub fn bent_engine(case: &Case, system: &System, free: &[Column]) -> Vec<Small> 
     let power = column(|power, _| power);
     let even = column(|_, _| 1.0);
     let known: Vec<&Column> = free.iter().chain([&even, &power]).collect();
-    let of = |(id, of): (&'static str, fn(f64, f64) -> f64)| {
+    let of = |(id, of): (&'static str, Product)| {
         let column = beyond(system, &case.fit, &column(of), &known)?;
         let sd = BENT * usual(&power) / usual(&column);
         Some(Small { id, column, sd })
     };
-    let bends: [(&'static str, fn(f64, f64) -> f64); 2] = [
-        ("fuel_power_squared", |power, _| power * power),
-        ("fuel_power_speed", |power, speed| power * speed.abs()),
-    ];
+    let squared: Product = |power, _| power * power;
+    let at_speed: Product = |power, speed| power * speed.abs();
+    let bends = [("fuel_power_squared", squared), ("fuel_power_speed", at_speed)];
     bends.into_iter().filter_map(of).filter(|small| small.sd.is_finite() && small.sd > 0.0).collect()
 }
 

@@ -88,12 +88,12 @@ fn choice(cause: &Cause) -> f64 {
     const TILT: f64 = 1.0;
     /// Drag of the air that is stated wrongly is the plainer square of speed.
     const SQUARE: f64 = 1.0;
+    /// Of no grid, each of its speeds was found at one of so many places.
+    const PLACES: f64 = 24.0;
     let clock = cause.terms.iter().any(|term| term.name == "from_s");
     let found = cause.law.as_ref().map_or(0.0, |law| law.cost);
     let tilt = cause.id == "accelerometer_tilt";
     let square = cause.terms.iter().any(|term| term.name == "quadratic");
-    // Of no grid, each of its speeds was found at one of so many places.
-    const PLACES: f64 = 24.0;
     let shapes = if cause.shapes.is_empty() {
         cause.speeds() as f64 * PLACES.ln()
     } else {

@@ -40,8 +40,7 @@ impl Model {
             return self.driveline.deliver(demand, states, rates);
         }
         let asked_n = sums.transmitted_n(demand.force_n, way);
-        let mut delivery =
-            self.driveline.deliver(&Demand { force_n: asked_n, ..demand.clone() }, states, rates);
+        let mut delivery = self.driveline.deliver(&Demand { force_n: asked_n, ..*demand }, states, rates);
         // What was asked for arrives as it was asked for, and not by rounding beside it.
         delivery.force_n =
             if delivery.force_n == asked_n { demand.force_n } else { sums.arriving_n(delivery.force_n, way) };

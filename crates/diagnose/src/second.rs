@@ -44,6 +44,13 @@ fn is_better(other: &Diagnosis, first: &Diagnosis) -> bool {
         && fitted < fitted_first
 }
 
+/// Whether another opinion takes the place of the first, in which `id` was doubtful. A clock that runs apart is one thing; what
+/// takes more than it does to say the same is a patch.
+fn wins(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
+    let patches = id == CLOCK && other.findings.len() > first.findings.len();
+    is_better(other, first) && !patches
+}
+
 /// The first opinion, or one without what is doubtful in it where that is better; `look` looks with other options.
 pub fn opinion(
     first: Diagnosed,
@@ -54,7 +61,7 @@ pub fn opinion(
     for id in doubtful(&best.diagnosis) {
         let without = options.without.iter().cloned().chain([id.to_owned()]).collect();
         match look(&Options { without, ..options.clone() }) {
-            Ok(other) if is_better(&other.diagnosis, &best.diagnosis) => best = other,
+            Ok(other) if wins(id, &other.diagnosis, &best.diagnosis) => best = other,
             // Nothing else may have been asked for.
             Ok(_) | Err(DiagnoseError::NoBalance { .. }) => {}
             Err(error) => return Err(error),

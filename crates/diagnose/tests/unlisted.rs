@@ -307,6 +307,43 @@ fn a_force_sensor_with_a_wrong_scale_is_told_by_motion_shaft_and_fuel_alike() {
     assert!((scale / SCALE - 1.0).abs() < 0.01, "{scale}: {}", found.answer);
 }
 
+/// A loss between the engine and the wheels whose force was measured: nothing of it is in the motion, and all of it at the shaft.
+#[test]
+fn a_loss_upstream_of_a_measured_force_is_told_by_the_shaft() {
+    const LOSS: f64 = 0.16;
+    let recording = with_a_shaft(&format!("driveline_efficiency(loss: {LOSS}, upstream: true)"), 12.0, 1e-4);
+    let registry = headland_stock::registry();
+    let found = found_of_scenario(&with_an_engine(""), &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    let ids: Vec<&str> = said.findings.iter().map(|finding| finding.id.as_str()).collect();
+    assert_eq!(ids, ["driveline_efficiency"], "{}", said.answer);
+    assert_eq!(said.findings[0].balance, Kind::Shaft, "{}", said.answer);
+    let value = said.findings[0].parameters[0].value;
+    assert!((value / LOSS - 1.0).abs() < 0.2, "{value}: {}", said.answer);
+    assert!(found.scenarios.iter().all(|text| text.contains("upstream: true")));
+}
+
+/// A flow meter that is late tells of fuel what the engine did before.
+#[test]
+fn a_fuel_rate_that_comes_late_is_a_latency() {
+    const LATE: usize = 24;
+    let mut recording = with_a_shaft("", 12.0, 1e-4);
+    for run in &mut recording.runs {
+        let fuel = run.trace.remove("fuel_rate_kg_s").unwrap();
+        let late = (0..fuel.values.len()).map(|index| fuel.values[index.saturating_sub(LATE)]).collect();
+        run.trace.push("fuel_rate_kg_s", late, Origin::Measured).unwrap();
+    }
+    let late_s = LATE as f64 * recording.runs[0].trace.period_s();
+    let registry = headland_stock::registry();
+    let found =
+        found_of_scenario(&with_an_engine(""), &recording, &Options::default(), &registry).unwrap().diagnosis;
+    assert_eq!(found.verdict, Verdict::SensorArtefact, "{}", found.answer);
+    let latency = &found.findings[0];
+    assert_eq!((latency.id.as_str(), latency.depends_on[0].as_str()), ("latency", "fuel_rate_kg_s"));
+    let value = latency.parameters[0].value;
+    assert!((value / late_s - 1.0).abs() < 0.2, "{value} for {late_s}: {}", found.answer);
+}
+
 /// Where the true cause is not in the library, no other is claimed as if it were certain.
 #[test]
 fn without_the_true_cause_no_listed_one_is_claimed_in_silence() {

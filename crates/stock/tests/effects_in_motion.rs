@@ -26,7 +26,7 @@ const BATTERY: (&str, &str) = (
 );
 
 /// Each effect with parameters that show, and a channel in which they show: on the car, or on the tractor.
-const EFFECTS: [(&str, &str, &str); 33] = [
+const EFFECTS: [(&str, &str, &str); 37] = [
     ("wind", "(speed_m_s: 4.0, from_rad: 0.5)", "tractive_force_n"),
     ("grade", "(positions_m: [0.0, 40.0, 90.0], grades: [0.0, 0.03, -0.01])", "tractive_force_n"),
     ("grade_constant", "(grade: 0.02)", "tractive_force_n"),
@@ -57,6 +57,14 @@ const EFFECTS: [(&str, &str, &str); 33] = [
     ("driveline_efficiency", "(loss: 0.08)", "tractive_force_n"),
     ("variator_loss", "(loss: 0.2, node_speeds_m_s: [3.0, 7.0])", "tractive_force_n"),
     ("shift_transient", "(force_n: 300.0, speeds_m_s: [3.0], width_m_s: 0.3)", "tractive_force_n"),
+    // Upstream of the force that is told: what drives gives more.
+    ("driveline_efficiency", "(loss: 0.08, upstream: true)", "battery_current_a"),
+    ("variator_loss", "(loss: 0.2, node_speeds_m_s: [3.0, 7.0], upstream: true)", "battery_current_a"),
+    (
+        "shift_transient",
+        "(force_n: 300.0, speeds_m_s: [3.0], width_m_s: 0.3, upstream: true)",
+        "battery_current_a",
+    ),
     ("auxiliary_power", "(power_w: 300.0, times_s: [5.0, 15.0], powers_w: [3000.0])", "battery_current_a"),
     ("engine_friction", "(torque_n_m: 30.0)", "fuel_rate_kg_s"),
     ("turbo_lag", "(time_constant_s: 1.0, unboosted_power_w: 30e3)", "tractive_force_n"),
@@ -68,6 +76,11 @@ const EFFECTS: [(&str, &str, &str); 33] = [
         "(resistance: \"c * N * tanh(v / v0_m_s)\", auxiliary_power: \"300 * one_w * (v > v0_m_s)\", \
           constants: {\"c\": 0.01, \"v0_m_s\": 2.0, \"one_w\": 1.0})",
         "tractive_force_n",
+    ),
+    (
+        "expression",
+        "(auxiliary_power: \"p_w * (F_drive / f1_n)^2\", constants: {\"p_w\": 200.0, \"f1_n\": 500.0})",
+        "battery_current_a",
     ),
 ];
 

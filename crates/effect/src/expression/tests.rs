@@ -12,6 +12,7 @@ fn situation() -> Situation {
         position_m: 120.0,
         speed_m_s: 10.0,
         acceleration_m_s2: 0.7,
+        tractive_force_n: 450.0,
         mass_kg: 2000.0,
         gravity_m_s2: 9.81,
         place: Place {
@@ -44,8 +45,10 @@ fn refused(text: &str) -> String {
 
 #[test]
 fn every_variable_is_what_its_name_says() {
-    let expected =
-        [10.0, 0.7, 120.0, 50.0, 0.5, 0.02, 0.6, 300.0, -5.0, 2000.0, 9.81, 15_696.0, 1.2, 3.0, 1.0, 0.0];
+    let expected = [
+        10.0, 0.7, 450.0, 120.0, 50.0, 0.5, 0.02, 0.6, 300.0, -5.0, 2000.0, 9.81, 15_696.0, 1.2, 3.0, 1.0,
+        0.0,
+    ];
     let expected = expected.into_iter().chain([4.0 * 1f64.cos(), 4.0 * 1f64.sin()]);
     assert_eq!(VARIABLES.len(), expected.clone().count());
     for (variable, expected) in VARIABLES.iter().zip(expected) {

@@ -79,7 +79,7 @@ const EFFECTS: [(&str, &str, &str); 37] = [
     ),
     (
         "expression",
-        "(auxiliary_power: \"p_w * (F_drive / f1_n)^2\", constants: {\"p_w\": 200.0, \"f1_n\": 500.0})",
+        "(auxiliary_power: \"p_w * (F_drive / f1_n)^2\", constants: {\"p_w\": 1000.0, \"f1_n\": 5000.0})",
         "battery_current_a",
     ),
 ];

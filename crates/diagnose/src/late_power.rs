@@ -13,7 +13,7 @@ use crate::recorded::Recorded;
 use crate::refine::HALF_95;
 use crate::report::Interval;
 use crate::said::Said;
-use crate::sensors::with_channel;
+use crate::sensors::{interpolate, with_channel};
 use crate::{Case, DiagnoseError};
 use headland_recording::renewed_s;
 
@@ -83,7 +83,7 @@ pub fn set_right(case: &mut Case, late: Late, usable: &mut [Vec<bool>]) -> Resul
         let time_s = run.measured.trace.time_s().to_vec();
         for name in late.channels {
             let Some(samples) = run.measured.trace.get(name) else { continue };
-            let sooner = time_s.iter().map(|time| at(&time_s, samples, time + late.value)).collect();
+            let sooner = time_s.iter().map(|time| interpolate(&time_s, samples, time + late.value)).collect();
             run.measured.trace = with_channel(&run.measured.trace, name, sooner)?;
         }
         // What a late sensor would have said after the end nobody knows.
@@ -129,7 +129,11 @@ fn pair(run: &Recorded, said: &Said, kind: Kind, channel: &str) -> Option<Pair> 
         if 2 * known.0.len() < samples.len() || known.0.len() < 2 {
             return None;
         }
-        Some((0..count).map(|index| at(&known.0, &known.1, time_s[0] + STEP_S * index as f64)).collect())
+        Some(
+            (0..count)
+                .map(|index| interpolate(&known.0, &known.1, time_s[0] + STEP_S * index as f64))
+                .collect(),
+        )
     };
     let (measured, modelled) = (even(measured)?, even(modelled)?);
     (count as f64 * STEP_S > 2.0 * LASTING_S).then_some(Pair { measured, modelled })
@@ -219,12 +223,6 @@ fn follow(samples: &[f64], constant_s: f64) -> Vec<f64> {
         state
     };
     samples.iter().map(one).collect()
-}
-
-fn at(times: &[f64], values: &[f64], time: f64) -> f64 {
-    let right = times.partition_point(|one| *one < time).clamp(1, times.len() - 1);
-    let share = ((time - times[right - 1]) / (times[right] - times[right - 1])).clamp(0.0, 1.0);
-    values[right - 1] + share * (values[right] - values[right - 1])
 }
 
 #[cfg(test)]

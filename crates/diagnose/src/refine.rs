@@ -264,8 +264,7 @@ pub fn spells(case: &Case, system: &System, events: &[Event], refined: &mut Refi
     let Some(balance) = motion else { return };
     for (id, events) in named(&case.runs, events) {
         let limit = if id == "braking" { limit_w(case, &events) } else { None };
-        let cured = spelt(if limit.is_some() { "regeneration_limit" } else { id }, events, balance);
-        let mut cured = cured;
+        let mut cured = spelt(if limit.is_some() { "regeneration_limit" } else { id }, events, balance);
         if limit.is_none() && id == "braking" && is_gentle(case, &cured.events) {
             cured.accepted.rivals.extend(pull_instead(case, &cured.accepted));
         }

@@ -269,7 +269,8 @@ pub fn with_channel(trace: &Trace, name: &str, values: Vec<f64>) -> Result<Trace
     Ok(changed)
 }
 
-fn interpolate(times: &[f64], values: &[f64], at: f64) -> f64 {
+/// What lies between samples, or at an end of them.
+pub fn interpolate(times: &[f64], values: &[f64], at: f64) -> f64 {
     let right = times.partition_point(|time| *time < at).clamp(1, times.len() - 1);
     let share = ((at - times[right - 1]) / (times[right] - times[right - 1])).clamp(0.0, 1.0);
     values[right - 1] + share * (values[right] - values[right - 1])

@@ -4,7 +4,7 @@ use crate::catalogue::Form;
 use crate::look::MANY_ROWS;
 use crate::search::{Found, LEAST_GAIN};
 use crate::state::{Part, State};
-use crate::trial::{Pool, add_trial};
+use crate::trial::{Pool, Trial, add_trial};
 use crate::{Case, DiagnoseError, System};
 
 /// So many causes get the chance.
@@ -132,19 +132,30 @@ fn likely(
     found: &Found,
     (cause, shape): (usize, &[f64]),
 ) -> Result<f64, DiagnoseError> {
+    // What was accepted left the noise that it left.
+    let accepted = found.accepted.iter().any(|one| case.causes[one.trial.cause].id == case.causes[cause].id);
+    let noises = if accepted { &found.noises.1 } else { &found.noises.0 };
+    likeliest(case, system, pool, (cause, shape), |state, trial| {
+        state.likely(&[Part { trial: trial.clone(), spread: None }], noises)
+    })
+}
+
+/// The best of the trials of a cause of this shape, as each is judged; none of them stays.
+fn likeliest(
+    case: &Case,
+    system: &System,
+    pool: &mut Pool,
+    (cause, shape): (usize, &[f64]),
+    judged: impl Fn(&State, &Trial) -> Option<f64>,
+) -> Result<f64, DiagnoseError> {
     if !case.causes[cause].possible(shape) {
         return Ok(f64::NEG_INFINITY);
     }
     let (columns, trials) = (pool.columns.len(), pool.trials.len());
     add_trial(case, system, pool, cause, shape)?;
     let state = State { case, system, pool, fit: &case.fit };
-    // What was accepted left the noise that it left.
-    let accepted = found.accepted.iter().any(|one| case.causes[one.trial.cause].id == case.causes[cause].id);
-    let noises = if accepted { &found.noises.1 } else { &found.noises.0 };
-    let judged = pool.trials[trials..]
-        .iter()
-        .filter_map(|trial| state.likely(&[Part { trial: trial.clone(), spread: None }], noises));
-    let greatest = judged.fold(f64::NEG_INFINITY, f64::max);
+    let new = pool.trials[trials..].iter().filter_map(|trial| judged(&state, trial));
+    let greatest = new.fold(f64::NEG_INFINITY, f64::max);
     pool.truncate(columns, trials);
     Ok(greatest)
 }
@@ -173,7 +184,6 @@ fn best(
     how: How,
     (cause, start): (usize, &[f64]),
 ) -> Result<Vec<f64>, DiagnoseError> {
-    let (columns, trials) = (pool.columns.len(), pool.trials.len());
     let own = found.accepted.iter().find(|one| one.trial.cause == cause);
     let accepted = own.filter(|_| how != How::ByItself);
     let spread = own.and_then(|one| one.function.as_ref()).map(|function| function.spread.clone());
@@ -190,24 +200,15 @@ fn best(
         How::Beside => found.noises.1.clone(),
         How::Quietly => State { case, system, pool, fit: &case.fit }.quiet(&found.stand),
     };
-    let mut likely = |shape: &[f64]| -> Result<f64, DiagnoseError> {
-        if !case.causes[cause].possible(shape) {
-            return Ok(f64::NEG_INFINITY);
+    let judged = |state: &State, trial: &Trial| {
+        if wanted.as_ref().is_some_and(|terms| *terms != trial.terms) {
+            return None;
         }
-        add_trial(case, system, pool, cause, shape)?;
-        let state = State { case, system, pool, fit: &case.fit };
-        let new = pool.trials[trials..]
-            .iter()
-            .filter(|trial| wanted.as_ref().is_none_or(|terms| *terms == trial.terms));
-        let judged = new.filter_map(|trial| {
-            let mut parts = others.clone();
-            parts.push(Part { trial: trial.clone(), spread: spread.clone() });
-            state.likely(&parts, &noises)
-        });
-        let greatest = judged.fold(f64::NEG_INFINITY, f64::max);
-        pool.truncate(columns, trials);
-        Ok(greatest)
+        let mut parts = others.clone();
+        parts.push(Part { trial: trial.clone(), spread: spread.clone() });
+        state.likely(&parts, &noises)
     };
+    let mut likely = |shape: &[f64]| likeliest(case, system, pool, (cause, shape), judged);
     let terms: Vec<_> = case.causes[cause].terms.iter().filter(|term| !term.linear).collect();
     let mut shape = start.to_vec();
     let mut greatest = likely(&shape)?;

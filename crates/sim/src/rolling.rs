@@ -67,11 +67,7 @@ impl Model {
             delivery = self.deliver(&demand, behind, own, &mut rates[range]);
         }
         if let Command::Recorded(force_n) = command {
-            // The recording has the last word on the force; what the model would not have given is made up by no one.
-            let transmitted_n = |force_n: f64| sums.transmitted_n(force_n, asked.way());
-            delivery.source_power_w +=
-                (transmitted_n(force_n) - transmitted_n(delivery.force_n)) * demand.speed_m_s;
-            delivery.force_n = force_n;
+            sums.record(&mut delivery, force_n, (demand.speed_m_s, asked.way()));
         }
         let brake_n = asked.brake_n(|| {
             let more_n = (delivery.force_n - wanted_n) * direction;

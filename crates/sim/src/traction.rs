@@ -214,10 +214,7 @@ impl Model {
         let mut force_n = asked_n;
         let (mut delivery, mut slip) = ask(force_n);
         if let Command::Recorded(recorded_n) = asked.command {
-            let transmitted_n = |force_n: f64| sums.transmitted_n(force_n, way);
-            delivery.source_power_w +=
-                (transmitted_n(recorded_n) - transmitted_n(delivery.force_n)) * demand.speed_m_s;
-            delivery.force_n = recorded_n;
+            sums.record(&mut delivery, recorded_n, (demand.speed_m_s, way));
             return (delivery, slip);
         }
         let mut before = None::<(f64, f64)>;

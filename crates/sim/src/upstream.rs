@@ -10,10 +10,24 @@ use crate::balance::Sums;
 use headland_plugin::{Delivery, Demand};
 
 impl Sums {
+    /// Whether anything is lost there.
+    #[inline(always)]
+    fn loses_upstream(&self) -> bool {
+        self.upstream_share != 0.0 || self.upstream_n != 0.0
+    }
+
+    /// Lets the recording have the last word on the force; what the model would not have given is made up by no one.
+    #[inline(always)]
+    pub fn record(&self, delivery: &mut Delivery, force_n: f64, (speed_m_s, way): (f64, f64)) {
+        let more_n = self.transmitted_n(force_n, way) - self.transmitted_n(delivery.force_n, way);
+        delivery.source_power_w += more_n * speed_m_s;
+        delivery.force_n = force_n;
+    }
+
     /// Force before the losses [N], of the one that arrives; both forward, `way` is the direction of motion.
     #[inline(always)]
     pub fn transmitted_n(&self, arriving_n: f64, way: f64) -> f64 {
-        if self.upstream_share == 0.0 && self.upstream_n == 0.0 {
+        if !self.loses_upstream() {
             return arriving_n;
         }
         let whole_n = arriving_n + way * self.upstream_n;
@@ -36,7 +50,7 @@ impl Model {
         states: &[f64],
         rates: &mut [f64],
     ) -> Delivery {
-        if sums.upstream_share == 0.0 && sums.upstream_n == 0.0 {
+        if !sums.loses_upstream() {
             return self.driveline.deliver(demand, states, rates);
         }
         let asked_n = sums.transmitted_n(demand.force_n, way);

@@ -74,8 +74,9 @@ pub fn powers(all: &mut Vec<Cause>, around: &Around) {
     // An engine that was driven just before starts warm, so that often one run alone starts cold, or each as cold as it is.
     // What enrichment and a cold catalyst take besides is over too soon to be told from a run's begin by itself.
     let cold = |words, besides: Option<Term>| {
-        let (fastest_s, slowest_s) = (WARM_UP_S.min(around.duration_s / SHORT), fading(around).high);
-        let warming = shape("time_constant_s", "s").within(fastest_s, slowest_s.max(fastest_s));
+        let fastest_s = WARM_UP_S.min(around.duration_s / SHORT);
+        let slowest_s = fading(around).high.max(fastest_s);
+        let warming = shape("time_constant_s", "s").within(fastest_s, slowest_s);
         let terms = [positive("cold_torque_n_m", "N m", 30.0), warming];
         cause(
             "cold_start",
@@ -89,7 +90,7 @@ pub fn powers(all: &mut Vec<Cause>, around: &Around) {
         .shaped(
             [30.0, 60.0, 90.0, 150.0, 240.0, 480.0, 960.0]
                 .into_iter()
-                .filter(|tau| (fastest_s..=slowest_s.max(fastest_s)).contains(tau))
+                .filter(|tau| (fastest_s..=slowest_s).contains(tau))
                 .map(|tau| vec![tau])
                 .collect(),
         )

@@ -4,10 +4,12 @@ use crate::balance::Kind;
 use crate::catalogue::Cause;
 use crate::noise::{Noises, Whiteners};
 use crate::rows::Row;
+use crate::said::inputs;
 use crate::state::{Part, State};
 use crate::trial::{Pool, effect, lost_drive_n};
 use crate::{Case, DiagnoseError, System};
 use headland_calibrate::statistics::median;
+use headland_sim::Inputs;
 use headland_symbolic::{Law, Nuisance, Options, Problem, Rows, SymbolicError, Target, Variable, find};
 
 /// A wave takes so many blocks of samples.
@@ -246,17 +248,20 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     // Where no force was measured a power is made of the acceleration already.
     let known = || case.runs.iter().all(|run| run.force_n.is_some());
     let acceleration = of(&|run| run.acceleration_m_s2.clone()).filter(|_| kind.is_power() && known());
+    let engine_speed = channel("engine_speed_rad_s").filter(|runs| kind.is_power() && tells_more(case, runs));
     let slope = channel("grade").map(|runs: Vec<Vec<f64>>| -> Vec<Vec<f64>> {
         runs.iter().map(|grade| grade.iter().map(|grade| grade.atan().sin()).collect()).collect()
     });
-    let offered: [Offered; 10] = [
+    let offered: [Offered; 12] = [
         ("v", "m/s", of(&|run| run.motion.value.clone())),
         ("acceleration", "m/s²", acceleration),
+        ("engine_speed", "rad/s", engine_speed),
         ("x", "m", of(&|run| run.position_m.clone())),
         ("t", "s", of(&|run| run.measured.trace.time_s().to_vec())),
         ("heading", "rad", channel("heading_rad")),
         ("kappa", "1/m", channel("curvature_per_m")),
         ("temperature", "°C", channel("air_temperature_c")),
+        ("oil_temperature", "°C", channel("oil_temperature_c")),
         ("coasting", "1", channel("coasting")),
         ("slope", "1", slope),
         ("m", "kg", masses_kg(case)),
@@ -271,6 +276,27 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
         })
     };
     offered.into_iter().filter_map(variable).collect()
+}
+
+/// Whether recorded speeds of the engine say more than the vehicle's: one that gears tie to the wheels turns as they do. They have
+/// to be those that the model is driven by, too.
+fn tells_more(case: &Case, engine_rad_s: &[Vec<f64>]) -> bool {
+    /// Share of its square that may follow the speed of the vehicle.
+    const TIED: f64 = 0.95;
+    let told = |run: &crate::recorded::Recorded| {
+        inputs(&run.measured.trace, &run.measured.how).contains(&Inputs::EngineSpeed)
+    };
+    let pairs = || {
+        let speeds = case.runs.iter().flat_map(|run| &run.motion.value);
+        speeds.zip(engine_rad_s.iter().flatten()).map(|(v, n)| (v.abs(), *n))
+    };
+    let count = pairs().count().max(1) as f64;
+    let (v, n) = pairs().fold((0.0, 0.0), |(v, n), pair| (v + pair.0 / count, n + pair.1 / count));
+    let (vv, nn, vn) = pairs().fold((0.0, 0.0, 0.0), |(vv, nn, vn), pair| {
+        let (dv, dn) = (pair.0 - v, pair.1 - n);
+        (vv + dv * dv, nn + dn * dn, vn + dv * dn)
+    });
+    case.runs.iter().all(told) && nn > 0.0 && vn * vn < TIED * vv * nn
 }
 
 #[cfg(test)]

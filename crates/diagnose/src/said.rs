@@ -190,7 +190,7 @@ fn at_rest(model: &Model, modelled: &Trace, effective_mass_kg: &[f64]) -> Vec<f6
 }
 
 /// Every recorded circumstance, whatever the scenario's replay is told.
-fn inputs(trace: &Trace, how: &Replay) -> Vec<Inputs> {
+pub fn inputs(trace: &Trace, how: &Replay) -> Vec<Inputs> {
     let mut also = how.also.clone();
     let circumstances = [
         Inputs::Coasting,
@@ -198,6 +198,7 @@ fn inputs(trace: &Trace, how: &Replay) -> Vec<Inputs> {
         Inputs::Roll,
         Inputs::VerticalAcceleration,
         Inputs::AirTemperature,
+        Inputs::OilTemperature,
         Inputs::Heading,
         Inputs::EngineSpeed,
     ];

@@ -415,3 +415,83 @@ fn a_law_has_the_same_bits_at_one_thread_and_at_two() {
     };
     assert_eq!(text(1), text(2));
 }
+
+/// A fan on the crankshaft takes what the engine's speed says, whatever the vehicle's is, and only fuel tells of it.
+#[test]
+fn a_fan_on_the_crankshaft_is_found_by_the_speed_of_the_engine() {
+    const POWER_W: f64 = 12e3;
+    const AT_RAD_S: f64 = 200.0;
+    let hidden = format!(
+        r#"expression(shaft_power: "p_w * (engine_speed / n_rad_s)^3", constants: {{"p_w": {POWER_W}, "n_rad_s": {AT_RAD_S}}})"#
+    );
+    let kept = |effects: &str| {
+        let text = with_an_engine(effects);
+        let (before, rest) = text.split_once("cycle: [").unwrap();
+        let (_, after) = rest.split_once("effects: [").unwrap();
+        let at = |speed_m_s: f64, engine_rad_s: f64| {
+            format!(
+                "With(engine_speed_rad_s: {engine_rad_s}, phases: [\
+                 Reach(speed_m_s: {speed_m_s}, acceleration_m_s2: 0.4), Hold(for_s: 12)]), "
+            )
+        };
+        let cycle: String =
+            [(3.0, 210.0), (6.0, 150.0), (2.0, 120.0), (7.0, 190.0), (4.0, 100.0), (5.0, 210.0)]
+                .map(|(speed_m_s, engine_rad_s)| at(speed_m_s, engine_rad_s))
+                .concat();
+        format!("{before}cycle: [{cycle}],\n    effects: [{after}")
+    };
+    let registry = headland_stock::registry();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "fuel_rate_kg_s" => value + 5e-5 * draws.normal(),
+        _ => value,
+    };
+    let channels = ["speed_m_s", "tractive_force_n", "engine_speed_rad_s", "fuel_rate_kg_s"];
+    let recording = recording_of_scenario(&kept(&hidden), &registry, &channels, (8, &noisy));
+    let found = found_of_scenario(&kept(""), &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);
+    assert!(said.findings[0].depends_on.contains(&"engine_speed_rad_s".to_owned()), "{}", said.answer);
+    let improved = Scenario::of_text("improved.ron", &found.scenarios[0], Path::new(""), &registry).unwrap();
+    let model = improved.model(&registry).unwrap();
+    let power_w = |engine_rad_s: f64| -> f64 {
+        let at = Situation { engine_speed_rad_s: Some(engine_rad_s), ..Situation::default() };
+        let of = |one: &headland_sim::Named<dyn headland_plugin::Effect>| {
+            let action = one.plugin.act(&at, &[], &mut []);
+            action.auxiliary_power_w + action.shaft_power_w
+        };
+        model.effects.iter().map(of).sum()
+    };
+    // What is the same at every speed belongs to the consumers that are known.
+    let told = power_w(200.0) - power_w(120.0);
+    assert!(told > 5e3 && told < 2e4, "{told}: {}", said.answer);
+}
+
+/// Oil that was recorded to warm up thins: a drag by its temperature, which no clock and no start says.
+#[test]
+fn a_drag_by_the_recorded_temperature_of_the_oil_is_found_as_an_equation() {
+    /// Drag at the temperature below, by the speed [N s/m], and how it fades [K].
+    const DRAG_N_S_M: f64 = 900.0;
+    const AT_C: f64 = 20.0;
+    const FADES_K: f64 = 14.0;
+    let mut recording = recorded(0.069, "");
+    for (number, run) in recording.runs.iter_mut().enumerate() {
+        // A cooler that comes and goes: warmer and colder again within each run.
+        let oil_c: Vec<f64> =
+            run.trace.time_s().iter().map(|t| 35.0 + 15.0 * (t / 9.0 + 1.3 * number as f64).sin()).collect();
+        let force = run.trace.remove("tractive_force_n").unwrap().values;
+        let speed = run.trace.get("speed_m_s").unwrap();
+        let more = |(v, oil_c): (&f64, &f64)| DRAG_N_S_M * v.max(0.0) * (-(oil_c - AT_C) / FADES_K).exp();
+        let drag: Vec<f64> = speed.iter().zip(&oil_c).map(more).collect();
+        let coasting = run.trace.remove("coasting").unwrap();
+        let until = coasting.values.iter().position(|on| *on > 0.5).unwrap() - 1;
+        let force = force.iter().zip(&drag).map(|(force, drag)| force + drag).collect();
+        run.trace.push("tractive_force_n", force, Origin::Measured).unwrap();
+        run.trace.push("oil_temperature_c", oil_c, Origin::Measured).unwrap();
+        run.trace = run.trace.slice(0.0, run.trace.time_s()[until]);
+    }
+    let found = found(&recording, &Options::default()).unwrap();
+    let said = &found.diagnosis;
+    assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);
+    assert!(said.findings[0].depends_on.contains(&"oil_temperature_c".to_owned()), "{}", said.answer);
+}

@@ -68,12 +68,12 @@ impl Plugin for Expression {
         name: "expression",
         about: "a force, a loss of the drive or a power as a formula of the situation",
         equation: "R, F, λ, P = + - * / ^ < <= > >= == != ( ) min max clamp abs sign sqrt pow exp ln log10 sin cos tanh of \
-                   v [m/s] acceleration [m/s²] F_drive [N] x [m] t [s] heading [rad] kappa [1/m] slope [1] elevation [m] temperature [°C] m [kg] \
+                   v [m/s] acceleration [m/s²] F_drive [N] engine_speed [rad/s] x [m] t [s] heading [rad] kappa [1/m] slope [1] elevation [m] temperature [°C] oil_temperature [°C] m [kg] \
                    g [m/s²] N [N] rho [kg/m³] area [m²] coasting [1] braking [1] headwind [m/s] crosswind [m/s] and \
                    constants",
         source: "the author of the scenario; empirical",
         validity: "units have to fit; comparisons are 1 or 0; slope is the sine, N = m g cos θ the normal load, the cross \
-                   wind comes from the right; powers alone may name the acceleration and F_drive, the force at the wheels, which forces make; a force that is not finite stops the simulation, \
+                   wind comes from the right; oil_temperature has to be recorded; powers alone may name the acceleration, F_drive, the force at the wheels, and engine_speed, which forces make; a force that is not finite stops the simulation, \
                    such a power leaves the drive without any",
         parameters: &[
             parameter(

@@ -46,6 +46,11 @@ pub struct Situation {
     pub tractive_force_n: f64,
     /// How hard the vehicle is shaken: its vertical acceleration in the mean square [m²/s⁴]; `None` where nothing says so.
     pub shaking_m2_s4: Option<f64>,
+    /// How fast the engine turns [rad/s], for powers that follow it; `None` where the driveline has none, and while forces are
+    /// asked for.
+    pub engine_speed_rad_s: Option<f64>,
+    /// Temperature of the driveline's oil [°C]; `None` where none was recorded.
+    pub oil_temperature_c: Option<f64>,
 }
 
 impl Air {

@@ -46,6 +46,7 @@ pub(crate) struct Given {
     pub roll_rad: Option<f64>,
     pub shaking_m2_s4: Option<f64>,
     pub air: Option<Air>,
+    pub oil_temperature_c: Option<f64>,
     pub auxiliary_power_w: Option<f64>,
     pub drawbar_force_n: Option<f64>,
     /// What is carried beside the vehicle and its tasks [kg].
@@ -57,6 +58,14 @@ pub(crate) struct Given {
     pub driver_rate: f64,
     /// Whether the motion is recorded: then it was driven, whatever effects would have allowed.
     pub driven: bool,
+}
+
+/// What the forces make, for powers that follow it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Made {
+    acceleration_m_s2: f64,
+    tractive_force_n: f64,
+    engine_speed_rad_s: Option<f64>,
 }
 
 /// Everything that is known at one instant.
@@ -252,7 +261,7 @@ impl Model {
         let made = if follows {
             let first = self.balance_at::<false, WHOLE>(
                 at,
-                (0.0, 0.0),
+                Made::default(),
                 layout,
                 slots,
                 states,
@@ -260,20 +269,25 @@ impl Model {
                 powers,
                 scratch,
             );
-            (first.acceleration_m_s2, first.delivery.force_n)
+            let speed_rad_s = first.delivery.readings.engine_speed_rad_s;
+            Made {
+                acceleration_m_s2: first.acceleration_m_s2,
+                tractive_force_n: first.delivery.force_n,
+                engine_speed_rad_s: speed_rad_s.is_finite().then_some(speed_rad_s),
+            }
         } else {
-            (0.0, 0.0)
+            Made::default()
         };
         self.balance_at::<DECIDES, WHOLE>(at, made, layout, slots, states, rates, powers, scratch)
     }
 
-    /// As [`Model::balance`], with what effects are told of the acceleration and of the force of the drive.
+    /// As [`Model::balance`], with what effects are told of what the forces make.
     #[allow(clippy::too_many_arguments, reason = "as in the balance")]
     #[inline(always)]
     fn balance_at<const DECIDES: bool, const WHOLE: bool>(
         &self,
         (point, command, given): (Point, Command, &Given),
-        (acceleration_m_s2, tractive_force_n): (f64, f64),
+        made: Made,
         layout: &Layout,
         slots: &Slots,
         states: &[f64],
@@ -283,8 +297,9 @@ impl Model {
     ) -> Instant {
         let Point { speed_m_s, direction, .. } = point;
         let mut situation = self.situation(point, command, given);
-        situation.acceleration_m_s2 = acceleration_m_s2;
-        situation.tractive_force_n = tractive_force_n;
+        situation.acceleration_m_s2 = made.acceleration_m_s2;
+        situation.tractive_force_n = made.tractive_force_n;
+        situation.engine_speed_rad_s = made.engine_speed_rad_s;
         let sums = self.sums(&mut situation, given, layout, states, rates, scratch);
         let place = situation.place;
 
@@ -400,6 +415,8 @@ impl Model {
             braking: given.braking,
             tractive_force_n: 0.0,
             shaking_m2_s4: given.shaking_m2_s4,
+            engine_speed_rad_s: None,
+            oil_temperature_c: given.oil_temperature_c,
         }
     }
 

@@ -58,6 +58,7 @@ pub enum Inputs {
     VerticalAcceleration,
     Wind,
     AirTemperature,
+    OilTemperature,
     AuxiliaryPower,
     DrawbarForce,
     /// Mass that is carried beside that of the vehicle.
@@ -71,7 +72,7 @@ pub enum Inputs {
 
 impl Inputs {
     /// Every circumstance that a model is told without being asked to.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Grade,
         Self::Heading,
         Self::Curvature,
@@ -79,6 +80,7 @@ impl Inputs {
         Self::VerticalAcceleration,
         Self::Wind,
         Self::AirTemperature,
+        Self::OilTemperature,
         Self::AuxiliaryPower,
         Self::DrawbarForce,
         Self::Payload,
@@ -96,6 +98,7 @@ impl Inputs {
             Self::VerticalAcceleration => &["vertical_acceleration_m_s2"],
             Self::Wind => &["wind_speed_m_s", "wind_direction_rad"],
             Self::AirTemperature => &["air_temperature_c"],
+            Self::OilTemperature => &["oil_temperature_c"],
             Self::AuxiliaryPower => &["auxiliary_power_w"],
             Self::DrawbarForce => &["drawbar_force_n"],
             Self::Payload => &["payload_kg"],
@@ -234,6 +237,7 @@ impl<'a> Tape<'a> {
                 Inputs::AirTemperature => {
                     given.air.get_or_insert(model.air).temperature_c = value(0);
                 }
+                Inputs::OilTemperature => given.oil_temperature_c = Some(value(0)),
                 Inputs::AuxiliaryPower => given.auxiliary_power_w = Some(value(0)),
                 Inputs::DrawbarForce => given.drawbar_force_n = Some(value(0)),
                 Inputs::Payload => given.payload_kg = value(0),

@@ -203,6 +203,8 @@ mod tests {
                 drag_area_m2: 6.0 + 0.01 * k,
                 coasting: index % 3 == 0,
                 braking: index % 5 == 0,
+                engine_speed_rad_s: Some(120.0 + 0.7 * k),
+                oil_temperature_c: Some(35.0 + 0.2 * k),
                 ..Situation::default()
             }
         };
@@ -214,6 +216,7 @@ mod tests {
         match name {
             "v" => at.speed_m_s,
             "acceleration" => at.acceleration_m_s2,
+            "engine_speed" => at.engine_speed_rad_s.unwrap_or(f64::NAN),
             "x" => at.position_m,
             "t" => at.time_s,
             "heading" => at.place.heading_rad,
@@ -221,6 +224,7 @@ mod tests {
             "slope" => at.place.sin_slope,
             "elevation" => at.place.elevation_m,
             "temperature" => at.air.temperature_c,
+            "oil_temperature" => at.oil_temperature_c.unwrap_or(f64::NAN),
             "m" => at.mass_kg,
             "g" => at.gravity_m_s2,
             "N" => at.mass_kg * at.gravity_m_s2 * at.place.cos_slope(),

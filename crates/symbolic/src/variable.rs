@@ -61,10 +61,14 @@ const fn known(name: &'static str, unit: &'static str, ending: &'static str, kin
 /// identity.
 pub(crate) const ACCELERATION: &str = "acceleration";
 
+/// How fast the engine turns: what a force asks of it tells that, so that it may stand in the law of a power alone.
+const ENGINE_SPEED: &str = "engine_speed";
+
 /// Everything that may stand in a law.
-pub(crate) const KNOWN: [Known; 18] = [
+pub(crate) const KNOWN: [Known; 20] = [
     known("v", "m/s", "_m_s", Kind::Size),
     known(ACCELERATION, "m/s²", "_m_s2", Kind::Signed),
+    known(ENGINE_SPEED, "rad/s", "_rad_s", Kind::Size),
     known("x", "m", "_m", Kind::Coordinate),
     known("t", "s", "_s", Kind::Coordinate),
     known("heading", "rad", "_rad", Kind::Angle),
@@ -72,6 +76,7 @@ pub(crate) const KNOWN: [Known; 18] = [
     known("slope", "1", "", Kind::Signed),
     known("elevation", "m", "_m", Kind::Level),
     Known { name: "temperature", unit: "°C", value_ending: "_c", scale_ending: "_k", kind: Kind::Level },
+    Known { name: "oil_temperature", unit: "°C", value_ending: "_c", scale_ending: "_k", kind: Kind::Level },
     known("m", "kg", "_kg", Kind::Weight),
     known("g", "m/s²", "_m_s2", Kind::Weight),
     known("N", "N", "_n", Kind::Weight),
@@ -147,7 +152,8 @@ pub(crate) fn check<'a>(
 ) -> Result<Vec<Checked<'a>>, SymbolicError> {
     /// A smaller share of the greatest value is rounding.
     const LEAST_SPREAD: f64 = 1e-9;
-    let allowed = |known: &&Known| target == Target::Power || known.name != ACCELERATION;
+    let allowed =
+        |known: &&Known| target == Target::Power || ![ACCELERATION, ENGINE_SPEED].contains(&known.name);
     let mut all: Vec<Checked<'a>> = Vec::new();
     let mut names: Vec<&str> = Vec::new();
     for variable in variables {

@@ -5,15 +5,17 @@ use crate::balance::Kind;
 use headland_symbolic::Target;
 
 /// Channels that the variables of a formula are read from.
-pub const CHANNELS: [(&str, &str); 11] = [
+pub const CHANNELS: [(&str, &str); 13] = [
     ("v", "speed_m_s"),
     ("acceleration", "acceleration_m_s2"),
     ("F_drive", "tractive_force_n"),
+    ("engine_speed", "engine_speed_rad_s"),
     ("x", "position_m"),
     ("t", "time_s"),
     ("heading", "heading_rad"),
     ("kappa", "curvature_per_m"),
     ("temperature", "air_temperature_c"),
+    ("oil_temperature", "oil_temperature_c"),
     ("coasting", "coasting"),
     ("slope", "grade"),
     ("m", "payload_kg"),

@@ -168,6 +168,7 @@ const CIRCUMSTANCES: &[&str] = &[
     "coasting",
     "brake",
     "air_temperature_c",
+    "oil_temperature_c",
     "wind_speed_m_s",
     "wind_direction_rad",
     "auxiliary_power_w",

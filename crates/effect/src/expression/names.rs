@@ -15,17 +15,19 @@ const fn variable(name: &'static str, unit: &'static str, of: fn(&Situation) -> 
     Variable { name, unit, of }
 }
 
-/// Those that only a power may name: the acceleration, which forces make, and the force of the drive, which is not known before
-/// them.
-pub(super) const MADE: [&str; 2] = [ACCELERATION, DRIVE];
+/// Those that only a power may name: the acceleration, which forces make, and the force of the drive and the speed of the engine,
+/// which are not known before them.
+pub(super) const MADE: [&str; 3] = [ACCELERATION, DRIVE, ENGINE];
 const ACCELERATION: &str = "acceleration";
 const DRIVE: &str = "F_drive";
+const ENGINE: &str = "engine_speed";
 
-/// Every variable. Signs are those of [`Situation`]; the cross wind counts from the right.
-pub(super) const VARIABLES: [Variable; 19] = [
+/// Every variable; NaN where it is not known. Signs are those of [`Situation`]; the cross wind counts from the right.
+pub(super) const VARIABLES: [Variable; 21] = [
     variable("v", "m/s", |at| at.speed_m_s),
     variable(ACCELERATION, "m/s²", |at| at.acceleration_m_s2),
     variable(DRIVE, "N", |at| at.tractive_force_n),
+    variable(ENGINE, "rad/s", |at| at.engine_speed_rad_s.unwrap_or(f64::NAN)),
     variable("x", "m", |at| at.position_m),
     variable("t", "s", |at| at.time_s),
     variable("heading", "rad", |at| at.place.heading_rad),
@@ -33,6 +35,7 @@ pub(super) const VARIABLES: [Variable; 19] = [
     variable("slope", "1", |at| at.place.sin_slope),
     variable("elevation", "m", |at| at.place.elevation_m),
     variable("temperature", "°C", |at| at.air.temperature_c),
+    variable("oil_temperature", "°C", |at| at.oil_temperature_c.unwrap_or(f64::NAN)),
     variable("m", "kg", |at| at.mass_kg),
     variable("g", "m/s²", |at| at.gravity_m_s2),
     variable("N", "N", |at| at.mass_kg * at.gravity_m_s2 * at.place.cos_slope()),

@@ -1,12 +1,13 @@
 //! Functions side by side: where two of them act on the same rows, as softer ground along a path and a tank that fills do, none
-//! can be eliminated before the other. Their knots are taken together, in one matrix that has no band.
+//! can be eliminated before the other. Their knots are taken together, in one matrix whose band is all of it.
 //!
 //! Source: Rasmussen and Williams, *Gaussian Processes for Machine Learning* (2006), section 2.7, for a sum of processes.
 
+use crate::band::{Band, Factor};
 use crate::gram::{Reduced, Whitened, right_side};
 use crate::profile::{Function, Group, Profile, Spread, Widths, log_precision, precision_entries};
 use crate::rows::Chunk;
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// Knots of all functions together are at most so many.
@@ -27,7 +28,7 @@ pub struct Abreast<'p, 'a> {
 
 /// The knots of all members: factor of their precision, products with the other columns, ln |P| of what was known before.
 struct Solved {
-    factor: Cholesky<f64, Dyn>,
+    factor: Factor,
     cross: DMatrix<f64>,
     log_prior: f64,
 }
@@ -57,11 +58,9 @@ impl<'p, 'a> Abreast<'p, 'a> {
         fit: &[bool],
         reduced: &mut Reduced,
     ) -> Option<()> {
-        let Solved { factor, cross, log_prior } = self.solved(whitened, chunks, fit)?;
-        let half = factor.l_dirty().solve_lower_triangular(&cross)?;
-        let taken = half.transpose() * &half;
-        let log_determinant: f64 = factor.l_dirty().diagonal().iter().map(|pivot| 2.0 * pivot.ln()).sum();
-        reduced.take(&taken, log_determinant - log_prior);
+        let Solved { factor, mut cross, log_prior } = self.solved(whitened, chunks, fit)?;
+        factor.half_solve(&mut cross);
+        reduced.take(&(cross.transpose() * &cross), factor.log_determinant() - log_prior);
         Some(())
     }
 
@@ -77,7 +76,7 @@ impl<'p, 'a> Abreast<'p, 'a> {
         let Solved { factor, cross, .. } = self.solved(whitened, chunks, fit)?;
         let values = factor.solve(&right_side(&cross, beta));
         let sd = match widths {
-            Widths::Wanted => factor.inverse().diagonal().map(f64::sqrt),
+            Widths::Wanted => factor.inverse_diagonals().0.map(f64::sqrt),
             Widths::Left => DVector::from_element(self.knots, f64::NAN),
         };
         let of_member = |((_, spread), groups): (&Spreaded, &Vec<(Group, usize)>)| {
@@ -95,16 +94,13 @@ impl<'p, 'a> Abreast<'p, 'a> {
     }
 
     fn solved(&self, whitened: &Whitened, chunks: &[Chunk], fit: &[bool]) -> Option<Solved> {
-        let mut matrix = DMatrix::zeros(self.knots, self.knots);
+        let mut matrix = Band::zeros(self.knots, self.knots);
         let mut cross = DMatrix::zeros(self.knots, whitened.width() + 1);
         let mut log_prior = 0.0;
         for ((_, spread), groups) in self.members.iter().zip(&self.groups) {
             for (number, (group, first)) in groups.iter().enumerate() {
                 for (row, column, value) in precision_entries(number, group, spread) {
-                    matrix[(first + row, first + column)] += value;
-                    if row != column {
-                        matrix[(first + column, first + row)] += value;
-                    }
+                    matrix.add(first + row.max(column), first + row.min(column), value);
                 }
                 log_prior += log_precision(number, group, spread);
             }
@@ -130,9 +126,9 @@ impl<'p, 'a> Abreast<'p, 'a> {
             chunks.par_iter().enumerate().map(of_chunk).collect();
         for (index, own) in of_chunks.iter().enumerate() {
             for (first, basis) in own {
-                for (other, beside) in own {
-                    let mut view = matrix.view_mut((*first, *other), (basis.ncols(), beside.ncols()));
-                    view += basis.transpose() * beside;
+                matrix.add_block(*first, &(basis.transpose() * basis));
+                for (other, beside) in own.iter().filter(|(other, _)| other < first) {
+                    matrix.add_beside(*first, *other, &(basis.transpose() * beside));
                 }
                 let mut view = cross.view_mut((*first, 0), (basis.ncols(), whitened.width() + 1));
                 view += basis.transpose() * &whitened.chunks[index];

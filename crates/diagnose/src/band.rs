@@ -15,6 +15,9 @@ pub struct Band {
     entries: Vec<f64>,
 }
 
+/// Rows and columns that are taken at once where a band is wide.
+const BLOCK: usize = 64;
+
 /// The lower Cholesky factor of such a matrix, in the same order.
 pub struct Factor(Band);
 
@@ -44,6 +47,15 @@ impl Band {
         }
     }
 
+    /// Adds a block whose first row and column are these, all of it left of the diagonal.
+    pub fn add_beside(&mut self, first_row: usize, first_column: usize, block: &DMatrix<f64>) {
+        for row in 0..block.nrows() {
+            for column in 0..block.ncols() {
+                self.add(first_row + row, first_column + column, block[(row, column)]);
+            }
+        }
+    }
+
     /// Entries `from..to` of a row, which lie in the band and not above the diagonal.
     fn row(&self, row: usize, from: usize, to: usize) -> &[f64] {
         &self.entries[self.place(row, from)..self.place(row, to)]
@@ -54,7 +66,11 @@ impl Band {
     }
 
     /// Its factor; none where it is not positive definite.
-    pub fn cholesky(mut self) -> Option<Factor> {
+    pub fn cholesky(self) -> Option<Factor> {
+        if self.width > 2 * BLOCK { self.by_blocks() } else { self.by_entries() }
+    }
+
+    fn by_entries(mut self) -> Option<Factor> {
         for row in 0..self.size {
             for column in self.first(row)..=row {
                 let from = self.first(row).max(self.first(column));
@@ -73,6 +89,62 @@ impl Band {
         }
         Some(Factor(self))
     }
+
+    /// The same in blocks, of which all but the diagonal ones take products of matrices alone.
+    fn by_blocks(mut self) -> Option<Factor> {
+        let mut done: Vec<BlockRow> = Vec::with_capacity(self.size.div_ceil(BLOCK));
+        for begin in (0..self.size).step_by(BLOCK) {
+            let end = (begin + BLOCK).min(self.size);
+            let first = self.first(begin) / BLOCK * BLOCK;
+            let mut own = DMatrix::zeros(end - begin, end - first);
+            for row in begin..end {
+                for column in self.first(row)..=row {
+                    own[(row - begin, column - first)] = self.entries[self.place(row, column)];
+                }
+            }
+            for other in &done[first / BLOCK..] {
+                let known = other.begin - first;
+                let (left, mut target) =
+                    own.columns_range_pair_mut(..known, known..known + other.inverse_transposed.nrows());
+                if known > 0 {
+                    let beside = other.factor.columns(first - other.first, known).transpose();
+                    target.gemm(-1.0, &left, &beside, 1.0);
+                }
+                let solved = &target * &other.inverse_transposed;
+                target.copy_from(&solved);
+            }
+            let known = begin - first;
+            let (left, mut target) = own.columns_range_pair_mut(..known, known..);
+            if known > 0 {
+                target.gemm(-1.0, &left, &left.transpose(), 1.0);
+            }
+            let lower = target.clone_owned().cholesky()?.unpack();
+            if !lower.diagonal().iter().all(|pivot| pivot.is_finite()) {
+                return None;
+            }
+            target.copy_from(&lower);
+            let inverse = lower.solve_lower_triangular(&DMatrix::identity(end - begin, end - begin))?;
+            for row in begin..end {
+                for column in self.first(row)..=row {
+                    let place = self.place(row, column);
+                    self.entries[place] = own[(row - begin, column - first)];
+                }
+            }
+            done.push(BlockRow { begin, first, factor: own, inverse_transposed: inverse.transpose() });
+        }
+        Some(Factor(self))
+    }
+}
+
+/// Some rows of a factor.
+struct BlockRow {
+    /// The first of them.
+    begin: usize,
+    /// The column that they begin with.
+    first: usize,
+    factor: DMatrix<f64>,
+    /// Of their square on the diagonal.
+    inverse_transposed: DMatrix<f64>,
 }
 
 impl Factor {
@@ -115,6 +187,44 @@ impl Factor {
 
     /// The diagonal of the inverse, and what stands to the left of it; of the first row nothing does.
     pub fn inverse_diagonals(&self) -> (DVector<f64>, DVector<f64>) {
+        /// A band of more than such a share of the matrix has an inverse of its factor that is hardly larger.
+        const WIDE: usize = 4;
+        let wide = self.0.width > 2 * BLOCK && WIDE * self.0.width > self.0.size;
+        if wide { self.inverse_diagonals_by_blocks() } else { self.inverse_diagonals_by_entries() }
+    }
+
+    /// Sums over the columns of L⁻¹, of which A⁻¹ = L⁻ᵀ L⁻¹ is made.
+    fn inverse_diagonals_by_blocks(&self) -> (DVector<f64>, DVector<f64>) {
+        let Self(factor) = self;
+        let mut inverse = DMatrix::zeros(factor.size, factor.size);
+        for begin in (0..factor.size).step_by(BLOCK) {
+            let count = BLOCK.min(factor.size - begin);
+            let first = factor.first(begin);
+            let rows = |from: usize, columns: usize| {
+                DMatrix::from_fn(count, columns, |row, column| {
+                    let (row, column) = (begin + row, from + column);
+                    let held = column <= row && column >= factor.first(row);
+                    if held { factor.entries[factor.place(row, column)] } else { 0.0 }
+                })
+            };
+            let mut lone = DMatrix::identity(count, count);
+            // A factor's diagonal is positive.
+            rows(begin, count).solve_lower_triangular_mut(&mut lone);
+            if begin > 0 {
+                let known = rows(first, begin - first) * inverse.view((first, 0), (begin - first, begin));
+                inverse.view_mut((begin, 0), (count, begin)).copy_from(&(-&lone * known));
+            }
+            inverse.view_mut((begin, begin), (count, count)).copy_from(&lone);
+        }
+        let product = |one: usize, other: usize| inverse.column(one).dot(&inverse.column(other));
+        let beside = |row: usize| if row == 0 { 0.0 } else { product(row, row - 1) };
+        (
+            DVector::from_fn(factor.size, |row, _| product(row, row)),
+            DVector::from_fn(factor.size, |row, _| beside(row)),
+        )
+    }
+
+    fn inverse_diagonals_by_entries(&self) -> (DVector<f64>, DVector<f64>) {
         let Self(factor) = self;
         // Z = D⁻¹ + (I − Lᵀ/d) Z within the band, from the last row up. Both halves are kept, so that rows lie in one piece:
         // row i holds the columns i − width ..= i + width.
@@ -196,6 +306,30 @@ mod tests {
         let right = DVector::from_fn(9, |row, _| (row as f64).sin());
         let solved = band.cholesky().unwrap().solve(&right);
         assert!((full * solved - right).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_wide_one_has_the_same_factor_by_blocks() {
+        for (size, width) in
+            [(3 * BLOCK + 5, 2 * BLOCK + 1), (4 * BLOCK, BLOCK + 7), (2 * BLOCK + 1, 2 * BLOCK)]
+        {
+            let mut band = Band::zeros(size, width);
+            for row in 0..size {
+                for column in row.saturating_sub(width)..=row {
+                    let apart = (row - column) as f64;
+                    let own = if row == column { 3.0 + (row % 7) as f64 } else { 0.0 };
+                    band.add(row, column, own + (-apart / 40.0).exp() * (0.3 * apart).cos());
+                }
+            }
+            let (one, other) = (band.clone().by_entries().unwrap(), band.clone().by_blocks().unwrap());
+            let apart = one.0.entries.iter().zip(&other.0.entries).map(|(one, other)| (one - other).abs());
+            assert!(apart.fold(0.0, f64::max) < 1e-12, "{size}, {width}");
+            let (own, beside) = one.inverse_diagonals_by_entries();
+            let by_blocks = one.inverse_diagonals_by_blocks();
+            assert!((own - by_blocks.0).amax() < 1e-12 && (beside - by_blocks.1).amax() < 1e-12);
+            band.add(size / 2, size / 2, -50.0);
+            assert!(band.clone().by_entries().is_none() && band.by_blocks().is_none());
+        }
     }
 
     #[test]

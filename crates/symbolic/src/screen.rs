@@ -12,6 +12,7 @@ use crate::shape::{Factor, Shape};
 use crate::term::Term;
 use crate::variable::Kind;
 use crate::vector::{dot, normalise, take_out};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 /// The terms of the dictionary with their projected columns.
@@ -97,11 +98,20 @@ impl Screen {
 
     /// The best of all gains for each of many residuals, with no law yet.
     pub fn best_gains(&self, residuals: &[Vec<f64>]) -> Vec<f64> {
-        /// Columns of so many terms stay in the cache while all residuals pass by.
-        const TERMS: usize = 16;
+        /// Terms whose columns are multiplied at once.
+        const TERMS: usize = 64;
+        let rows = residuals.first().map_or(0, Vec::len);
+        let left = DMatrix::from_iterator(rows, residuals.len(), residuals.iter().flatten().copied());
         let of = |terms: &[Vec<Vec<f64>>]| -> Vec<f64> {
-            let best = |left: &Vec<f64>| terms.iter().map(|term| gain(term, &[], left)).fold(0.0, f64::max);
-            residuals.iter().map(best).collect()
+            let count = terms.iter().map(Vec::len).sum();
+            let columns = terms.iter().flatten().flatten().copied();
+            let shares = DMatrix::from_row_iterator(count, rows, columns) * &left;
+            let best = |at: usize| {
+                let mut squares = shares.column(at).into_iter().map(|share| share * share);
+                let gains = terms.iter().map(|term| squares.by_ref().take(term.len()).sum::<f64>());
+                gains.fold(0.0, f64::max)
+            };
+            (0..residuals.len()).map(best).collect()
         };
         let parts: Vec<Vec<f64>> = self.columns.par_chunks(TERMS).map(of).collect();
         (0..residuals.len()).map(|at| parts.iter().map(|part| part[at]).fold(0.0, f64::max)).collect()

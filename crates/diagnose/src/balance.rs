@@ -4,6 +4,7 @@ use crate::gram::Column;
 use crate::likeliest::{Weighted, likeliest};
 use crate::loudness;
 use crate::noise::{Noise, Noises, Shape};
+use crate::overrun::overruns;
 use crate::recorded::{Recorded, SLOWEST_M_S};
 use crate::rows::{Chunk, Row, chunks};
 use crate::said::Said;
@@ -503,6 +504,7 @@ fn usable(kind: Kind, run: &Recorded, said: &Said) -> Vec<bool> {
                     finite(run.engine_w.as_deref())
                         && finite(said.engine_w.as_deref())
                         && run.measured.compared[i]
+                        && !overruns(run, said, i)
                 }
                 Kind::Charge => {
                     run.charge_j.is_some()
@@ -526,6 +528,7 @@ fn usable(kind: Kind, run: &Recorded, said: &Said) -> Vec<bool> {
                     finite(channel("fuel_rate_kg_s"))
                         && finite(said.fuel_kg_s.as_deref())
                         && run.measured.compared[i]
+                        && !overruns(run, said, i)
                 }
             }
         })

@@ -49,6 +49,7 @@ mod loudness;
 mod map;
 mod mirror;
 mod noise;
+mod overrun;
 mod own;
 mod places;
 mod profile;

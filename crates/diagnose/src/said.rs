@@ -202,12 +202,8 @@ pub fn inputs(trace: &Trace, how: &Replay) -> Vec<Inputs> {
         Inputs::Heading,
         Inputs::EngineSpeed,
     ];
-    // Where a torque but no force is known the engine's speed is the model's own: a power that is made of the motion is uneven,
-    // and at a speed that is given the full load would cut off its peaks.
-    let has = |name: &str| trace.get(name).is_some();
-    let uneven = has("engine_torque_n_m") && !has("tractive_force_n");
     for input in circumstances {
-        if !also.contains(&input) && input.whole(trace) && !(input == Inputs::EngineSpeed && uneven) {
+        if !also.contains(&input) && input.whole(trace) {
             also.push(input);
         }
     }

@@ -27,11 +27,15 @@ pub struct Small {
     pub sd: f64,
 }
 
-/// A latency that every speed sensor has: a sampling period, or that of its filter [s].
+/// A latency that every speed sensor has [s]: that of its filter; of a slow one half a sampling period, as what is averaged or held
+/// over one has it, and a receiver's delay; never more than a period.
 pub fn small_latency_s(case: &Case) -> f64 {
     /// GNSS speed sensors are 15 to 20 ms late by their data sheets, more with a filter.
     const FILTER_S: f64 = 0.03;
-    longest_renewal_s(&case.runs, "speed_m_s").max(FILTER_S)
+    /// Raw receivers are 50 to 250 ms late.
+    const RECEIVER_S: f64 = 0.05;
+    let period_s = longest_renewal_s(&case.runs, "speed_m_s");
+    period_s.min(0.5 * period_s + RECEIVER_S).max(FILTER_S)
 }
 
 /// Whether what has this size is no fault: less than anybody would mind, or more than any sensor is wrong by.

@@ -16,12 +16,22 @@ pub const START: &str = "start_torque_n_m";
 const WARM_UP_S: f64 = 120.0;
 const SHORT: f64 = 10.0;
 
+/// Heaters and pumps of a car take so much [W] ...
+const OF_A_CAR_W: f64 = 1000.0;
+/// ... and what hangs on an engine of a tractor or truck several times as much: pumps on standby 3 to 10 kW, a fan 5 to 20 kW; usual
+/// figures, of no one source [W].
+const OF_AN_ENGINE_W: f64 = 3000.0;
+/// What is switched takes more than what is always on.
+const SWITCHED: f64 = 1.5;
+
 /// Adds what the drive of this vehicle could be missing.
 pub fn powers(all: &mut Vec<Cause>, around: &Around) {
+    let engine = around.channels.iter().any(|name| name == "fuel_rate_kg_s" || name == "engine_torque_n_m");
+    let usual_w = if engine { OF_AN_ENGINE_W } else { OF_A_CAR_W };
     all.push(cause(
         "auxiliary_power",
         &[Kind::Battery, Kind::Fuel],
-        vec![positive("power_w", "W", 1000.0)],
+        vec![positive("power_w", "W", usual_w)],
         "P = P₀",
         &[],
         "a consumer that is always on",
@@ -31,7 +41,7 @@ pub fn powers(all: &mut Vec<Cause>, around: &Around) {
         cause(
             "auxiliary_power",
             &[Kind::Battery, Kind::Fuel],
-            vec![positive("power_w", "W", 1500.0).within(0.0, f64::INFINITY)],
+            vec![positive("power_w", "W", SWITCHED * usual_w).within(0.0, f64::INFINITY)],
             "P = P(t)",
             &["time_s"],
             "a consumer that is switched with time",
@@ -44,7 +54,7 @@ pub fn powers(all: &mut Vec<Cause>, around: &Around) {
             cause(
                 "auxiliary_power",
                 &[Kind::Battery, Kind::Fuel],
-                vec![positive("power_w", "W", 1500.0), shape("from_s", "s"), shape("to_s", "s")],
+                vec![positive("power_w", "W", SWITCHED * usual_w), shape("from_s", "s"), shape("to_s", "s")],
                 "P = P₀ between two times",
                 &["time_s"],
                 "a consumer that is on for a while in each run",

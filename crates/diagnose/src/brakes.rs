@@ -96,24 +96,30 @@ fn excesses_n(case: &Case, sound: &[Vec<bool>], rolling: Rolling) -> Vec<Option<
     runs.map(|((run, said), sound)| excess_n(run, said, sound, rolling)).collect()
 }
 
-/// Whether others that come across the place of a stretch are held back there as much.
+/// Whether others that come across the place of a stretch are held back there as much. Those that all come the other way are pushed
+/// as much by a slope, which was taken for soft ground then, or the other way round: the stretch is twice what the ground does.
 fn is_ground(case: &Case, excess: &[Option<Vec<f64>>], event: &Event) -> bool {
     let own = &case.runs[event.run];
     let Some((from_m, to_m)) = stretch(own, event.from_s, event.to_s) else { return false };
-    let (mut crossed, mut alike) = (0usize, 0usize);
-    for (other, excess) in case.runs.iter().zip(excess) {
-        if other.number == own.number || other.path != own.path {
-            continue;
-        }
-        let there = other.position_m.iter().zip(excess.iter().flatten());
+    let held_n = |run: &Recorded| -> Option<f64> {
+        let there = run.position_m.iter().zip(excess[run.number].iter().flatten());
         let there = there.filter(|(place, value)| (from_m..=to_m).contains(*place) && value.is_finite());
         let (sum, count) = there.fold((0.0, 0usize), |(sum, count), (_, value)| (sum + value, count + 1));
-        if count > 0 {
-            crossed += 1;
-            alike += usize::from((sum / count as f64 - event.force_n).abs() < ALIKE * event.force_n);
-        }
+        (count > 0).then(|| sum / count as f64)
+    };
+    let near = |value_n: f64, wanted_n: f64| (value_n - wanted_n).abs() < ALIKE * wanted_n;
+    let doubled = held_n(own).is_some_and(|own_n| near(own_n.abs(), 0.5 * event.force_n));
+    let (mut crossed, mut alike, mut mirrored) = (0usize, 0usize, 0usize);
+    for other in case.runs.iter().filter(|other| other.number != own.number && other.path == own.path) {
+        let Some(other_n) = held_n(other) else { continue };
+        crossed += 1;
+        alike += usize::from(near(other_n, event.force_n));
+        let towards =
+            other.measured.how.reversed_from_m.is_some() != own.measured.how.reversed_from_m.is_some();
+        mirrored += usize::from(towards && near(other_n.abs(), 0.5 * event.force_n));
     }
-    crossed >= FEWEST_OTHERS && alike as f64 >= CROSSED * crossed as f64
+    let most = CROSSED * crossed as f64;
+    crossed >= FEWEST_OTHERS && (alike as f64 >= most || doubled && mirrored == crossed)
 }
 
 fn force(run: &Recorded, index: usize) -> f64 {

@@ -23,7 +23,7 @@ pub struct Sought {
     pub target: Target,
     /// What one newton or one watt makes of the rows of each balance that it shows in.
     per_unit: Vec<(Kind, f64)>,
-    /// Of what a share is lost, sample by sample [N], where a share is sought.
+    /// Of what a share is lost, sample by sample [N, or W of a power], where a share is sought.
     whole: Option<Vec<Vec<f64>>>,
 }
 
@@ -38,7 +38,11 @@ impl Sought {
         if target == Target::Share && !case.driven() {
             return Ok(None);
         }
-        let whole = if target == Target::Share { Some(lost_drive_n(case)?) } else { None };
+        let whole = match (target, kind) {
+            (Target::Share, Kind::Motion) => Some(lost_drive_n(case)?),
+            (Target::Share, _) => Some(driven_w(case)),
+            _ => None,
+        };
         // What takes power at the shaft takes fuel for it.
         let shows: &[Kind] = match kind {
             Kind::Shaft => &[Kind::Shaft, Kind::Fuel],
@@ -71,13 +75,23 @@ impl Sought {
 
     /// What may stand in the formula. What is lost on the way of a force is no matter of places or times.
     fn variables(&self, case: &Case) -> Vec<Variable> {
-        const OF_A_DRIVE: [&str; 3] = ["v", "temperature", "m"];
+        const OF_A_DRIVE: [&str; 5] = ["v", "temperature", "m", "engine_speed", "oil_temperature"];
         let mut all = variables(case, self.kind);
         if self.target == Target::Share {
             all.retain(|variable| OF_A_DRIVE.contains(&variable.name.as_str()));
         }
         all
     }
+}
+
+/// What the measured force of the drive takes, sample by sample [W]; nothing where none was measured.
+fn driven_w(case: &Case) -> Vec<Vec<f64>> {
+    let of_run = |run: &crate::recorded::Recorded| {
+        let force_n = run.measured.trace.get("tractive_force_n");
+        let power_w = |(index, v): (usize, &f64)| force_n.map_or(0.0, |force_n| (force_n[index] * v).abs());
+        run.motion.value.iter().enumerate().map(power_w).collect()
+    };
+    case.runs.iter().map(of_run).collect()
 }
 
 /// Power at the shaft or in the fuel that a consumer of one watt takes, on average.

@@ -40,9 +40,13 @@ pub fn unlisted(
     pool: &mut Pool,
     found: Found,
 ) -> Result<Found, DiagnoseError> {
-    /// Where power is drawn.
-    const POWERS: [(Kind, Target); 3] =
-        [(Kind::Shaft, Target::Power), (Kind::Battery, Target::Power), (Kind::Fuel, Target::Power)];
+    /// Where power is drawn, and lost upstream of a measured force.
+    const POWERS: [(Kind, Target); 4] = [
+        (Kind::Shaft, Target::Power),
+        (Kind::Shaft, Target::Share),
+        (Kind::Battery, Target::Power),
+        (Kind::Fuel, Target::Power),
+    ];
     let found = of_motion(case, system, pool, found)?;
     among(case, system, pool, found, &POWERS)
 }
@@ -76,17 +80,10 @@ fn among(
         if kind == Kind::Shaft && !forced {
             continue;
         }
-        // A consumer that is switched with time may take any course: where that is long, no law says more.
-        let any = found.stand.parts.iter().any(|part| {
-            let cause = &case.causes[part.trial.cause];
-            kind != Kind::Motion && cause.form == Form::OverTime && cause.balances.contains(&kind)
-        });
-        let any = any && system.row_count_of(kind) > MANY_ROWS;
         // What a formula says of the shaft it says of the fuel.
         let said_already = kind == Kind::Fuel && system.has(Kind::Shaft);
         if system.has(kind)
             && !said_already
-            && !any
             && let Some(sought) = Sought::new(case, system, kind, target)?
         {
             case.step("unlisted causes")?;
@@ -110,7 +107,15 @@ fn candidates(
     let functions = listed.iter().any(|part| part.spread.is_some());
     let rows = system.row_count_of(sought.kind);
     let mut starts = if functions && rows > MANY_ROWS { Vec::new() } else { vec![Vec::new()] };
-    if !listed.is_empty() {
+    // A consumer that is switched with time may take any course. Where that is long, no law says more beside it; one that says as
+    // much in its place knows what the next run will take.
+    let switched = |part: &Part| {
+        let cause = &case.causes[part.trial.cause];
+        sought.kind != Kind::Motion && cause.form == Form::OverTime && cause.balances.contains(&sought.kind)
+    };
+    if rows > MANY_ROWS && listed.iter().any(switched) {
+        starts.push(listed.into_iter().filter(|part| !switched(part)).collect());
+    } else if !listed.is_empty() {
         starts.push(listed);
     }
     for start in starts {
@@ -283,8 +288,12 @@ impl State<'_> {
         if self.simpler(stand, &found.stand) && found.stand.parts.iter().all(|part| part.spread.is_none()) {
             return PLAINER;
         }
-        let (shapeless, shaped): (Vec<Part>, Vec<Part>) =
-            found.stand.parts.iter().cloned().partition(|part| self.cause(&part.trial).by_run);
+        // Nor has a consumer that is switched with time.
+        let any = |part: &Part| {
+            let cause = self.cause(&part.trial);
+            cause.by_run || cause.form == Form::OverTime && cause.balances.iter().all(|kind| kind.is_power())
+        };
+        let (shapeless, shaped): (Vec<Part>, Vec<Part>) = found.stand.parts.iter().cloned().partition(any);
         let alone = if shapeless.is_empty() { None } else { self.settle(&shapeless, &found.stand.noises) };
         let brought = worth(&found.stand) - worth(alone.as_ref().unwrap_or(&found.first));
         let shaped = shaped.len();
@@ -491,7 +500,7 @@ fn add(case: &mut Case, system: &System, pool: &mut Pool, law: &Law, sought: &So
     let column = system.column(|own| {
         law.prediction.iter().enumerate().map(|(run, said)| sought.samples(own, run, said)).collect()
     });
-    put(case, pool, Cause::of_law(LawText::new(law, target), kind), column)
+    put(case, pool, Cause::of_law(LawText::new(law, target, kind), kind), column)
 }
 
 /// A law among the causes, with its regressor.

@@ -153,7 +153,7 @@ pub(crate) fn check<'a>(
     /// A smaller share of the greatest value is rounding.
     const LEAST_SPREAD: f64 = 1e-9;
     let allowed =
-        |known: &&Known| target == Target::Power || ![ACCELERATION, ENGINE_SPEED].contains(&known.name);
+        |known: &&Known| target != Target::Force || ![ACCELERATION, ENGINE_SPEED].contains(&known.name);
     let mut all: Vec<Checked<'a>> = Vec::new();
     let mut names: Vec<&str> = Vec::new();
     for variable in variables {

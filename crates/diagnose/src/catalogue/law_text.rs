@@ -41,17 +41,21 @@ pub struct LawText {
 }
 
 impl LawText {
-    /// The text of a law of a balance.
-    pub fn new(law: &headland_symbolic::Law, target: Target) -> Self {
+    /// The text of a law of a balance. A share of the drive that is lost before its force was measured takes power alone.
+    pub fn new(law: &headland_symbolic::Law, target: Target, kind: Kind) -> Self {
         /// Every piece of it was one of about a dozen: ln of that.
         const PER_PIECE: f64 = 2.5;
         Self {
             role: match target {
                 Target::Force => "resistance",
-                Target::Share => "loss_share",
+                Target::Share if kind == Kind::Motion => "loss_share",
+                Target::Share => "auxiliary_power",
                 Target::Power => "auxiliary_power",
             },
-            text: law.text.clone(),
+            text: match target {
+                Target::Share if kind != Kind::Motion => format!("abs(F_drive * v) * ({})", law.text),
+                _ => law.text.clone(),
+            },
             constants_text: law.constants_text(),
             constants: law.constants.clone(),
             depends_on: CHANNELS

@@ -23,6 +23,10 @@ const MISSED: f64 = 0.7;
 /// What is hardly beyond chance has to take this share of the error of runs held out.
 const BORNE_OUT: f64 = 0.1;
 
+/// Growth of ln p that the best of all formulas needs: a law of two terms is one of some ten thousand squared, and its constants are
+/// free. ln 10⁸ and a few for each constant.
+const OF_MANY: f64 = 40.0;
+
 /// What was found, with values and the proof of it.
 pub struct Proven {
     pub found: Found,
@@ -220,11 +224,8 @@ fn is_idle(with: &Errors, without: &Errors, (needed, faint): (f64, bool)) -> boo
     with.after > (1.0 - needed) * least && near
 }
 
-/// Whether a formula has less evidence than the best of all that were tried needs: a law of two terms is one of some ten
-/// thousand squared, and its constants are free. ln 10⁸ and a few for each constant.
+/// Whether a formula has less evidence than the best of all that were tried needs.
 fn is_slight(case: &Case, best: &Proven, place: usize) -> bool {
-    /// Growth of ln p.
-    const OF_MANY: f64 = 40.0;
     let trial = &best.found.stand.parts[place].trial;
     let own = best.refined.causes.iter().find(|cured| cured.accepted.trial.columns == trial.columns);
     let chosen = case.causes[trial.cause].law.as_ref().is_some_and(|law| law.cost > 0.0);
@@ -269,7 +270,7 @@ fn without_nothing(
             let parts = &own.found.stand.parts;
             let place = parts.iter().position(|part| part.trial.columns == *columns);
             // An equation in the place of the only cause says that there is something, whatever it is.
-            let law = |rival: &Rival| case.causes[rival.cause].law.is_some();
+            let law = |rival: &Rival| case.causes[rival.cause].law.is_some() && rival.gain >= OF_MANY;
             let able_alone = parts.len() > 1 || !cured.accepted.rivals.iter().any(law);
             let Some(place) = place.filter(|_| able_alone) else { continue };
             let state = State { case, system, pool, fit: &case.fit };

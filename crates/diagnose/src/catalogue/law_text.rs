@@ -49,8 +49,7 @@ impl LawText {
             role: match target {
                 Target::Force => "resistance",
                 Target::Share if kind == Kind::Motion => "loss_share",
-                Target::Share => "auxiliary_power",
-                Target::Power => "auxiliary_power",
+                Target::Share | Target::Power => "auxiliary_power",
             },
             text: match target {
                 Target::Share if kind != Kind::Motion => format!("abs(F_drive * v) * ({})", law.text),

@@ -90,9 +90,12 @@ pub fn sensors(all: &mut Vec<Cause>, around: &Around) {
         "an accelerometer that is mounted at a tilt",
         "stand level, and turn around on the spot",
     ));
+    // Force times the difference of speeds is taken from the engine; alone it could be any loss in proportion to load.
+    let turned = around.channels.iter().any(|name| name == "wheel_speed_m_s");
+    let balances: &'static [Kind] = if turned { &[Kind::Slip, Kind::Fuel] } else { &[Kind::Slip] };
     all.push(cause(
         "wheel_slip",
-        &[Kind::Slip],
+        balances,
         // Where an implement may pull and nobody knows how much, the motion tells of a part of the force only.
         vec![positive("coefficient", "1", if around.pulls { 0.15 } else { 0.4 })],
         "s = k F / N",

@@ -80,10 +80,17 @@ fn among(
         if kind == Kind::Shaft && !forced {
             continue;
         }
+        // A consumer that is switched with time may take any course: where that is long, no law says more.
+        let any = found.stand.parts.iter().any(|part| {
+            let cause = &case.causes[part.trial.cause];
+            kind != Kind::Motion && cause.form == Form::OverTime && cause.balances.contains(&kind)
+        });
+        let any = any && system.row_count_of(kind) > MANY_ROWS;
         // What a formula says of the shaft it says of the fuel.
         let said_already = kind == Kind::Fuel && system.has(Kind::Shaft);
         if system.has(kind)
             && !said_already
+            && !any
             && let Some(sought) = Sought::new(case, system, kind, target)?
         {
             case.step("unlisted causes")?;
@@ -107,15 +114,7 @@ fn candidates(
     let functions = listed.iter().any(|part| part.spread.is_some());
     let rows = system.row_count_of(sought.kind);
     let mut starts = if functions && rows > MANY_ROWS { Vec::new() } else { vec![Vec::new()] };
-    // A consumer that is switched with time may take any course. Where that is long, no law says more beside it; one that says as
-    // much in its place knows what the next run will take.
-    let switched = |part: &Part| {
-        let cause = &case.causes[part.trial.cause];
-        sought.kind != Kind::Motion && cause.form == Form::OverTime && cause.balances.contains(&sought.kind)
-    };
-    if rows > MANY_ROWS && listed.iter().any(switched) {
-        starts.push(listed.into_iter().filter(|part| !switched(part)).collect());
-    } else if !listed.is_empty() {
+    if !listed.is_empty() {
         starts.push(listed);
     }
     for start in starts {

@@ -61,6 +61,8 @@ pub struct Around {
 
 /// Shares of the greatest speed at which a drag may set in, beyond most of the samples.
 const FAST: [f64; 3] = [0.65, 0.78, 0.9];
+/// So far beyond them.
+const BEYOND: f64 = 1.1;
 /// Nobody measures in a stronger wind than a fresh gale, 8 on Beaufort's scale.
 const MOST_WIND_M_S: f64 = 20.0;
 
@@ -494,7 +496,12 @@ pub fn causes(around: &Around) -> Vec<Cause> {
                 .iter()
                 .flat_map(|v| [vec![*v, 0.1 * v.max(0.5)], vec![*v, 0.5 * v.max(0.5)]])
                 // A vehicle that slows down is fast for a moment only, and what sets in there lies beyond those.
-                .chain(FAST.map(|share| vec![share * around.fastest_m_s, 0.05 * around.fastest_m_s]))
+                .chain(
+                    FAST.iter()
+                        .map(|share| share * around.fastest_m_s)
+                        .filter(|v| *v > BEYOND * around.speeds_m_s[4])
+                        .map(|v| vec![v, 0.05 * around.fastest_m_s]),
+                )
                 .filter(|shape| shape.iter().sum::<f64>() <= around.fastest_m_s)
                 .collect(),
         ),

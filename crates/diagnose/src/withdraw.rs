@@ -127,6 +127,13 @@ pub fn proven(
             best = lesser;
             continue;
         }
+        if is_faint(&best, place)
+            && is_tiny(&best, place)
+            && let Some(found) = without(case, system, pool, &best.found, place)
+        {
+            best = Proven::of(case, system, pool, found, events, by)?;
+            continue;
+        }
         if let Some(lesser) = without_idle(case, system, pool, &best, (events, by), place)? {
             // What was hardly there to begin with leaves nothing missing.
             withdrawn |= !is_faint(&best, place);
@@ -242,6 +249,21 @@ fn is_faint(best: &Proven, place: usize) -> bool {
         cured.cause.class == Class::Physics
             && cured.cause.form == Form::Parameters
             && cured.accepted.gain < HARDLY * cured.accepted.by_chance
+    })
+}
+
+/// Whether a cause is so much less than usual that nobody would miss it: what a calibration leaves of the curve of a drag looks like
+/// this.
+fn is_tiny(best: &Proven, place: usize) -> bool {
+    /// Share of its usual size.
+    const TINY: f64 = 0.05;
+    let columns = &best.found.stand.parts[place].trial.columns;
+    let own = best.refined.causes.iter().find(|cured| cured.accepted.trial.columns == *columns);
+    own.is_some_and(|cured| {
+        let amplitudes = cured.cause.terms.iter().zip(&cured.values).filter(|(term, _)| term.linear);
+        cured.cause.own.is_none()
+            && amplitudes.clone().count() > 0
+            && amplitudes.into_iter().all(|(term, (value, _))| value.abs() < TINY * term.scale)
     })
 }
 

@@ -26,6 +26,8 @@ fn situation() -> Situation {
         drag_area_m2: 3.0,
         coasting: true,
         braking: false,
+        engine_speed_rad_s: Some(130.0),
+        oil_temperature_c: Some(70.0),
         ..Situation::default()
     }
 }
@@ -46,8 +48,8 @@ fn refused(text: &str) -> String {
 #[test]
 fn every_variable_is_what_its_name_says() {
     let expected = [
-        10.0, 0.7, 450.0, 120.0, 50.0, 0.5, 0.02, 0.6, 300.0, -5.0, 2000.0, 9.81, 15_696.0, 1.2, 3.0, 1.0,
-        0.0,
+        10.0, 0.7, 450.0, 130.0, 120.0, 50.0, 0.5, 0.02, 0.6, 300.0, -5.0, 70.0, 2000.0, 9.81, 15_696.0, 1.2,
+        3.0, 1.0, 0.0,
     ];
     let expected = expected.into_iter().chain([4.0 * 1f64.cos(), 4.0 * 1f64.sin()]);
     assert_eq!(VARIABLES.len(), expected.clone().count());
@@ -165,7 +167,7 @@ fn syntax_errors_name_the_character_and_what_was_expected() {
         ("abs * 2", "`*` at character 5, expected `(` behind the function `abs`"),
         (
             "f_n * ρρ + 2",
-            "`ρρ` at character 7, expected a constant of `constants` or one of v acceleration F_drive x",
+            "`ρρ` at character 7, expected a constant of `constants` or one of v acceleration F_drive engine_speed x",
         ),
         ("f_n * temperatur", "is `temperature` meant?"),
         ("f_n * ln(-1)", "`ln(-1)` at character 7, which is NaN, expected a finite number"),

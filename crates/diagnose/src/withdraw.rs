@@ -81,6 +81,12 @@ impl Proven {
             && self.worsened().is_some_and(|ratio| ratio > 1.0 + RISES)
     }
 
+    /// What became of one of the parts of what was found, where it is still claimed.
+    fn cured(&self, place: usize) -> Option<&Cured> {
+        let columns = &self.found.stand.parts[place].trial.columns;
+        self.refined.causes.iter().find(|cured| cured.accepted.trial.columns == *columns)
+    }
+
     /// Error on runs held out over that of the nominal scenario, where there are any.
     fn worsened(&self) -> Option<f64> {
         let errors = self.proof.held_out?;
@@ -206,8 +212,7 @@ fn without_idle(
         (None, _) => return Ok(None),
     };
     // What takes power at a shaft takes fuel for it: where it shows most is where it is told.
-    let accepted = best.refined.causes.iter().find(|cured| cured.accepted.trial.columns == trial.columns);
-    let shown = accepted.map(|cured| system.kinds[cured.accepted.balance]);
+    let shown = best.cured(place).map(|cured| system.kinds[cured.accepted.balance]);
     let kind = shown.or_else(|| system.kinds.iter().copied().find(|kind| kind.among(cause.balances)));
     let (Some(kind), Some(found)) = (kind, without(case, system, pool, &best.found, place)) else {
         return Ok(None);
@@ -234,7 +239,7 @@ fn is_idle(with: &Errors, without: &Errors, (needed, faint): (f64, bool)) -> boo
 /// Whether a formula has less evidence than the best of all that were tried needs.
 fn is_slight(case: &Case, best: &Proven, place: usize) -> bool {
     let trial = &best.found.stand.parts[place].trial;
-    let own = best.refined.causes.iter().find(|cured| cured.accepted.trial.columns == trial.columns);
+    let own = best.cured(place);
     let chosen = case.causes[trial.cause].law.as_ref().is_some_and(|law| law.cost > 0.0);
     chosen && own.is_some_and(|cured| cured.accepted.gain < OF_MANY)
 }
@@ -243,9 +248,7 @@ fn is_slight(case: &Case, best: &Proven, place: usize) -> bool {
 fn is_faint(best: &Proven, place: usize) -> bool {
     /// So many times the growth of ln p that is needed.
     const HARDLY: f64 = 2.0;
-    let columns = &best.found.stand.parts[place].trial.columns;
-    let own = best.refined.causes.iter().find(|cured| cured.accepted.trial.columns == *columns);
-    own.is_some_and(|cured| {
+    best.cured(place).is_some_and(|cured| {
         cured.cause.class == Class::Physics
             && cured.cause.form == Form::Parameters
             && cured.accepted.gain < HARDLY * cured.accepted.by_chance
@@ -257,9 +260,7 @@ fn is_faint(best: &Proven, place: usize) -> bool {
 fn is_tiny(best: &Proven, place: usize) -> bool {
     /// Share of its usual size.
     const TINY: f64 = 0.05;
-    let columns = &best.found.stand.parts[place].trial.columns;
-    let own = best.refined.causes.iter().find(|cured| cured.accepted.trial.columns == *columns);
-    own.is_some_and(|cured| {
+    best.cured(place).is_some_and(|cured| {
         let amplitudes = cured.cause.terms.iter().zip(&cured.values).filter(|(term, _)| term.linear);
         cured.cause.own.is_none()
             && amplitudes.clone().count() > 0

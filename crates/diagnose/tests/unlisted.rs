@@ -164,16 +164,21 @@ fn with_an_engine(effects: &str) -> String {
     format!("{before}{ENGINE}{after}")
 }
 
+/// Sensors of speed and fuel with noise; all else as it is.
+fn speed_and_fuel(fuel_noise_kg_s: f64) -> impl Fn(&str, f64, &mut Draws) -> f64 {
+    move |name, value, draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "fuel_rate_kg_s" => value + fuel_noise_kg_s * draws.normal(),
+        _ => value,
+    }
+}
+
 /// A fan that takes over where no wind cools any more, and only fuel tells of it.
 #[test]
 fn a_consumer_by_a_law_of_speed_is_found_in_the_fuel_and_in_watts() {
     const FAN: &str = r#"expression(auxiliary_power: "p_w * exp(-v / v0_m_s)", constants: {"p_w": 30000.0, "v0_m_s": 2.5})"#;
     let registry = headland_stock::registry();
-    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
-        "speed_m_s" => value + 0.02 * draws.normal(),
-        "fuel_rate_kg_s" => value + 1e-4 * draws.normal(),
-        _ => value,
-    };
+    let noisy = speed_and_fuel(1e-4);
     let channels = ["speed_m_s", "position_m", "heading_rad", "fuel_rate_kg_s"];
     let recording = recording_of_scenario(&with_an_engine(FAN), &registry, &channels, (5, &noisy));
     // These drives pass every place at one speed, and a function of the place would say the same.
@@ -204,11 +209,7 @@ fn an_engine_that_starts_cold_in_some_runs_is_found_with_its_friction() {
     const COLD: &str = "cold_start(cold_torque_n_m: 300.0, time_constant_s: 90.0)";
     const TORQUE_N_M: f64 = 300.0;
     let registry = headland_stock::registry();
-    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
-        "speed_m_s" => value + 0.02 * draws.normal(),
-        "fuel_rate_kg_s" => value + 1e-4 * draws.normal(),
-        _ => value,
-    };
+    let noisy = speed_and_fuel(1e-4);
     let channels = ["speed_m_s", "position_m", "heading_rad", "fuel_rate_kg_s", "engine_speed_rad_s"];
     let of =
         |effects: &str| recording_of_scenario(&with_an_engine(effects), &registry, &channels, (6, &noisy));
@@ -441,11 +442,7 @@ fn a_fan_on_the_crankshaft_is_found_by_the_speed_of_the_engine() {
         format!("{before}cycle: [{cycle}],\n    effects: [{after}")
     };
     let registry = headland_stock::registry();
-    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
-        "speed_m_s" => value + 0.02 * draws.normal(),
-        "fuel_rate_kg_s" => value + 5e-5 * draws.normal(),
-        _ => value,
-    };
+    let noisy = speed_and_fuel(5e-5);
     let channels = ["speed_m_s", "tractive_force_n", "engine_speed_rad_s", "fuel_rate_kg_s"];
     let recording = recording_of_scenario(&kept(&hidden), &registry, &channels, (8, &noisy));
     let found = found_of_scenario(&kept(""), &recording, &Options::default(), &registry).unwrap();

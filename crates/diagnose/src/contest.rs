@@ -94,6 +94,9 @@ impl State<'_> {
         };
         let mut judged: Vec<Contest> = finalists.into_par_iter().filter_map(settled).collect();
         judged.sort_by(|one, other| rank(&other.stand, self).total_cmp(&rank(&one.stand, self)));
+        if let Some(top) = judged.first_mut() {
+            self.reshape(top, stand);
+        }
         // Jumps are for what no steady function shows: beside one they would only follow the noise closer.
         let best = judged.iter().find(|one| !one.jumps());
         let steady = best.and_then(|one| Some(self.cause(&one.stand.parts.last()?.trial)));
@@ -101,6 +104,36 @@ impl State<'_> {
             judged.retain(|one| !one.jumps());
         }
         judged
+    }
+
+    /// The newest cause in its likeliest shape: the one that was judged was likeliest at the noise without it, which hides much.
+    fn reshape(&self, one: &mut Contest, without: &Stand) {
+        let Some(newest) = one.stand.parts.last().filter(|part| part.spread.is_none()) else { return };
+        let likely = |trial: &Trial| {
+            let mut parts = without.parts.clone();
+            parts.push(Part { trial: trial.clone(), spread: None });
+            self.likely(&parts, &one.stand.noises)
+        };
+        let alike = self.pool.trials.iter().filter(|trial| {
+            let own = &newest.trial;
+            trial.cause == own.cause && trial.terms == own.terms && trial.shape != own.shape
+        });
+        let told = alike.filter_map(|trial| Some((likely(trial)?, trial)));
+        let Some((greatest, trial)) = told.max_by(|one, other| one.0.total_cmp(&other.0)) else { return };
+        if likely(&newest.trial).is_some_and(|own| own >= greatest) {
+            return;
+        }
+        let mut parts = without.parts.clone();
+        parts.push(Part { trial: trial.clone(), spread: None });
+        let settled = self.settle(&parts, &one.stand.noises);
+        let better = settled.filter(|other| {
+            other.score > one.stand.score
+                && !self.impossible(&other.parts, &other.estimate)
+                && self.functions_possible(other)
+        });
+        if let Some(better) = better {
+            one.stand = better;
+        }
     }
 
     /// The functions, each spread as suits best at the noise of a set, and once more at the noise that neighbouring rows

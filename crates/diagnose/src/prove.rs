@@ -71,11 +71,20 @@ pub fn prove(
     // What a run tells of itself is no proof on it: errors are those with what the fitted runs told.
     let told = refined.causes.iter().map(|cured| reconstruct(case, system, cured, refined));
     let told = told.collect::<Result<Vec<_>, _>>()?;
-    let kind = by.unwrap_or_else(|| told_by(system, refined));
-    let (errors, noise) = if kind == Kind::Motion {
-        (speeds(case, &runs, refined)?, speed_noise(case))
-    } else {
-        (rows(case, system, &runs, refined, &told, kind)?, f64::NAN)
+    let mut kind = by.unwrap_or_else(|| told_by(system, refined));
+    let mut signal = None;
+    if kind == Kind::Motion {
+        let errors = speeds(case, &runs, refined)?;
+        let other = system.kinds.iter().find(|other| **other != Kind::Motion);
+        match other {
+            // Where no stretch can be driven forward, another balance tells.
+            Some(other) if errors.iter().all(|one| one.after.is_nan()) => kind = *other,
+            _ => signal = Some((errors, speed_noise(case))),
+        }
+    }
+    let (errors, noise) = match signal {
+        Some(signal) => signal,
+        None => (rows(case, system, &runs, refined, &told, kind)?, f64::NAN),
     };
     let over = |wanted: bool| {
         let chosen: Vec<&Errors> = errors
@@ -330,7 +339,7 @@ fn speeds(case: &Case, runs: &[Recorded], refined: &Refined) -> Result<Vec<Error
             .map(|(_, (one, other))| (one - other).powi(2))
             .filter(|value| value.is_finite())
             .collect();
-        Ok((squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt())
+        Ok((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
     };
     (0..runs.len())
         .into_par_iter()

@@ -1,6 +1,6 @@
 //! Shapes between the points of a grid: what lies between them must not be left for another cause to explain.
 
-use crate::catalogue::Form;
+use crate::catalogue::{Form, Term};
 use crate::look::MANY_ROWS;
 use crate::search::{Found, LEAST_GAIN};
 use crate::state::{Part, State};
@@ -78,8 +78,8 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
             }
             if best != shape {
                 // What fades by a time constant of its own is no better for having found it first.
-                for alike in alike(case, cause) {
-                    add_trial(case, system, pool, alike, &best)?;
+                for (alike, shape) in alike(case, cause, &best) {
+                    add_trial(case, system, pool, alike, &shape)?;
                 }
                 added = true;
             }
@@ -160,19 +160,27 @@ fn likeliest(
     Ok(greatest)
 }
 
-/// A cause, and others whose shapes have the same names: each is tried at the best shape of the other.
-fn alike(case: &Case, cause: usize) -> Vec<usize> {
-    let names = |cause: usize| -> Vec<&str> {
-        let terms = case.causes[cause].terms.iter();
-        terms.filter(|term| !term.linear && term.low < term.high).map(|term| term.name).collect()
-    };
+/// A cause of this shape, and others that fade by a time constant as well, each with it and with what it holds itself.
+fn alike(case: &Case, cause: usize, shape: &[f64]) -> Vec<(usize, Vec<f64>)> {
+    let of_shape = |cause: usize| case.causes[cause].terms.iter().filter(|term| !term.linear);
+    let free = |cause: usize| of_shape(cause).filter(|term| term.low < term.high);
+    let fades = |cause: usize| free(cause).map(|term| term.name).eq(["time_constant_s"]);
     let class = case.causes[cause].class;
-    (0..case.causes.len())
-        .filter(|other| {
-            let same = case.causes[*other].class == class && case.causes[*other].form == Form::Parameters;
-            *other == cause || same && names(*other) == names(cause) && names(cause) == ["time_constant_s"]
-        })
-        .collect()
+    let moved: Vec<f64> = of_shape(cause)
+        .zip(shape)
+        .filter(|(term, _)| term.low < term.high)
+        .map(|(_, value)| *value)
+        .collect();
+    let others = (0..case.causes.len()).filter(|other| {
+        let same = case.causes[*other].class == class && case.causes[*other].form == Form::Parameters;
+        *other != cause && same && fades(cause) && fades(*other)
+    });
+    let with = |other: usize| {
+        let mut moved = moved.iter();
+        let value = |term: &Term| if term.low < term.high { moved.next().copied() } else { Some(term.low) };
+        (other, of_shape(other).filter_map(value).collect())
+    };
+    std::iter::once((cause, shape.to_vec())).chain(others.map(with)).collect()
 }
 
 /// The shape that makes the recordings most likely, by moving one parameter at a time.

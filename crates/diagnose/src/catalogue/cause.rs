@@ -187,9 +187,12 @@ impl Cause {
         self
     }
 
-    /// Whether a term can be all that there is of it.
+    /// Whether a term can be all that there is of it: tyres that warm up in any air, and a level that rises in the cold, are causes
+    /// of their own.
     pub fn alone(&self, term: usize) -> bool {
-        self.terms[term].name != START
+        const TYRES: [&str; 2] = ["cold_coefficient", "coefficient_per_k"];
+        let sizes = |name: &&str| self.terms.iter().any(|term| term.linear && term.name == *name);
+        self.terms[term].name != START && !TYRES.iter().all(sizes)
     }
 
     /// Whether it is among those that the runs do not teach each other; one of them may still show it by itself.

@@ -603,6 +603,24 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             )
             .shaped(vec![vec![0.0, 600.0, 20.0]]),
         );
+        // Tyres that know the temperature outside warm up from it.
+        all.push(
+            cause(
+                "rolling_temperature",
+                MOTION,
+                vec![
+                    positive("cold_coefficient", "1", 0.01),
+                    fading(around),
+                    positive("coefficient_per_k", "1/K", 3e-4),
+                    shape("reference_temperature_c", "°C").held(20.0),
+                ],
+                "F = (Δc e^(−t/τ) + k (T₀ − T)) N",
+                &["time_s", "air_temperature_c"],
+                "tyres that warm up, and rolling resistance that rises in the cold",
+                "repeat on a warm day, and after a rest",
+            )
+            .shaped(taus.iter().map(|tau| vec![tau[0], 20.0]).collect()),
+        );
         all.push(
             cause(
                 "auxiliary_power",

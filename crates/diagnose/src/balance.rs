@@ -150,6 +150,8 @@ pub struct System {
     pub usual: Vec<Option<f64>>,
     /// Whether powers are made of nothing but motion.
     pub of_motion: bool,
+    /// The runs, by number, whose force is known most of the time.
+    pub forced: Vec<bool>,
     /// Whether what a line between fuel and work leaves grows with its power.
     pub bent: bool,
 }
@@ -210,6 +212,7 @@ impl System {
             blocks_s,
             usual,
             of_motion: is_of_motion(runs),
+            forced: runs.iter().map(Recorded::force_is_known).collect(),
             bent: false,
         };
         system.residual = system.residual_of(runs, said);
@@ -437,7 +440,7 @@ pub fn bearing(kinds: &[Kind], runs: &[Recorded], said: &[Said]) -> Vec<bool> {
 
 /// Whether no force was measured, so that powers are made of nothing but motion.
 fn is_of_motion(runs: &[Recorded]) -> bool {
-    runs.iter().all(|run| run.force_n.is_none())
+    !runs.iter().any(Recorded::force_is_known)
 }
 
 /// Length of a block of a balance; of a power that is made of motion at least as long as the window over which its acceleration was

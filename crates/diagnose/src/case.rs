@@ -358,7 +358,7 @@ impl<'a> Case<'a> {
                 .map(|channel| channel.name.clone())
                 .filter(|name| everywhere(name))
                 .collect(),
-            drives: self.driven() || self.runs.iter().all(|run| run.force_n.is_none()),
+            drives: self.driven() || !self.runs.iter().all(Recorded::force_is_known),
             passes: passes.into_iter().max().unwrap_or(1),
             temperatures_k: (warmest - coldest).max(0.0),
             beginnings: beginnings(&self.fit, &self.bears),

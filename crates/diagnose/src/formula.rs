@@ -3,6 +3,7 @@
 use crate::balance::Kind;
 use crate::catalogue::Cause;
 use crate::noise::{Noises, Whiteners};
+use crate::recorded::Recorded;
 use crate::rows::Row;
 use crate::said::inputs;
 use crate::state::{Part, State};
@@ -86,7 +87,7 @@ impl Sought {
 
 /// What the measured force of the drive takes, sample by sample [W]; nothing where none was measured.
 fn driven_w(case: &Case) -> Vec<Vec<f64>> {
-    let of_run = |run: &crate::recorded::Recorded| {
+    let of_run = |run: &Recorded| {
         let force_n = run.measured.trace.get("tractive_force_n");
         let power_w = |(index, v): (usize, &f64)| force_n.map_or(0.0, |force_n| (force_n[index] * v).abs());
         run.motion.value.iter().enumerate().map(power_w).collect()
@@ -233,7 +234,7 @@ fn enough(fit: &[bool], rows: &[Vec<f64>]) -> Vec<bool> {
 /// Mass that rests on the wheels, sample by sample, where that is known to differ; loads of a drive are told by themselves.
 fn masses_kg(case: &Case) -> Option<Vec<Vec<f64>>> {
     let priors = case.study.priors();
-    let of_run = |run: &crate::recorded::Recorded| {
+    let of_run = |run: &Recorded| {
         let model = case.study.model(&run.measured, &priors).ok()?;
         let trace = &run.measured.trace;
         let carried = |index: usize| trace.get("payload_kg").map_or(0.0, |payload| payload[index]);
@@ -260,7 +261,7 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
         _ => 0.0,
     };
     // Where no force was measured a power is made of the acceleration already.
-    let known = || case.runs.iter().all(|run| run.force_n.is_some());
+    let known = || case.runs.iter().all(Recorded::force_is_known);
     let acceleration = of(&|run| run.acceleration_m_s2.clone()).filter(|_| kind.is_power() && known());
     let engine_speed = channel("engine_speed_rad_s").filter(|runs| kind.is_power() && tells_more(case, runs));
     let slope = channel("grade").map(|runs: Vec<Vec<f64>>| -> Vec<Vec<f64>> {
@@ -297,9 +298,7 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
 fn tells_more(case: &Case, engine_rad_s: &[Vec<f64>]) -> bool {
     /// Share of its square that may follow the speed of the vehicle.
     const TIED: f64 = 0.95;
-    let told = |run: &crate::recorded::Recorded| {
-        inputs(&run.measured.trace, &run.measured.how).contains(&Inputs::EngineSpeed)
-    };
+    let told = |run: &Recorded| inputs(&run.measured.trace, &run.measured.how).contains(&Inputs::EngineSpeed);
     let pairs = || {
         let speeds = case.runs.iter().flat_map(|run| &run.motion.value);
         speeds.zip(engine_rad_s.iter().flatten()).map(|(v, n)| (v.abs(), *n))

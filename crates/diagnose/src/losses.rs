@@ -23,7 +23,7 @@ const SMALL: f64 = 0.025;
 
 /// The small losses, where there is a battery balance and a force is known.
 pub fn small_losses(case: &Case, system: &System) -> Vec<Small> {
-    if !system.has(Kind::Battery) || case.runs.iter().any(|run| run.force_n.is_none()) {
+    if !system.has(Kind::Battery) || !case.runs.iter().all(Recorded::force_is_known) {
         return Vec::new();
     }
     let of = |id: &'static str, samples: &dyn Fn(&Recorded) -> Vec<f64>, sd: Option<f64>| {
@@ -176,8 +176,8 @@ fn beyond(system: &System, fit: &[bool], column: &Column, others: &[&Column]) ->
 /// that what lies beyond is still seen.
 pub fn torque_errors(case: &Case, system: &System) -> Vec<Small> {
     /// Of the torque, and of the greatest torque.
-    const SCALE: f64 = 0.02;
-    const OFFSET: f64 = 0.01;
+    const SCALE: f64 = 0.006;
+    const OFFSET: f64 = 0.004;
     let of = |id: &'static str, samples: &dyn Fn(usize) -> Vec<f64>, sd: f64| {
         let column = system.column(|kind| {
             let of_run = |run: usize| if kind == Kind::Shaft { samples(run) } else { Vec::new() };
@@ -199,7 +199,7 @@ pub fn torque_errors(case: &Case, system: &System) -> Vec<Small> {
 
 /// The modelled power of a balance, where it is made of the motion alone [W].
 fn made_of_motion(kind: Kind, run: &Recorded, said: &Said) -> Option<Vec<f64>> {
-    if run.force_n.is_some() {
+    if run.force_is_known() {
         return None;
     }
     match kind {

@@ -5,9 +5,10 @@
 use crate::recorded::Recorded;
 use crate::said::Said;
 
-/// Whether the model's engine takes no fuel at a sample of a run whose forces follow from its motion and whose brakes were not
+/// Whether the model's engine takes no fuel at a sample whose force follows from the motion, in a run whose brakes were not
 /// recorded.
 pub fn overruns(run: &Recorded, said: &Said, sample: usize) -> bool {
-    let known = run.force_n.is_some() || run.measured.trace.get("brake").is_some();
+    let told = run.force_n.as_ref().is_some_and(|force_n| force_n[sample].is_finite());
+    let known = told || run.measured.trace.get("brake").is_some();
     !known && said.fuel_kg_s.as_ref().is_some_and(|fuel_kg_s| fuel_kg_s[sample] <= 0.0)
 }

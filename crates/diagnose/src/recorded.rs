@@ -158,6 +158,13 @@ impl Recorded {
         }
     }
 
+    /// Whether what drives is known most of the time, and not only that nothing does where a vehicle rolls.
+    pub fn force_is_known(&self) -> bool {
+        self.force_n.as_ref().is_some_and(|force_n| {
+            2 * force_n.iter().filter(|force| force.is_finite()).count() > force_n.len()
+        })
+    }
+
     /// What can drive the run forward.
     pub fn forward(&self) -> Option<Drive> {
         let trace = &self.measured.trace;

@@ -209,17 +209,14 @@ pub fn mute(cause: &Cause, kind: Kind, system: &System, samples: &mut [Vec<f64>]
 
 /// The runs, by number, in which a force tells of the cause and a power need not.
 fn told_by_force(cause: &Cause, kind: Kind, system: &System) -> Vec<bool> {
-    let mut forced = Vec::new();
     if !kind.is_power() || !cause.balances.contains(&Kind::Motion) {
-        return forced;
+        return Vec::new();
     }
-    for chunk in system.chunks.iter().filter(|chunk| system.kind(chunk) == Kind::Motion) {
-        if forced.len() <= chunk.run {
-            forced.resize(chunk.run + 1, false);
-        }
-        forced[chunk.run] = true;
-    }
-    forced
+    let moves = |run: usize| {
+        let mut rows = system.chunks.iter().filter(|chunk| system.kind(chunk) == Kind::Motion);
+        rows.any(|chunk| chunk.run == run)
+    };
+    system.forced.iter().enumerate().map(|(run, forced)| *forced && moves(run)).collect()
 }
 
 /// A standard deviation for a parameter of which nothing is known.

@@ -70,7 +70,7 @@ pub fn slow_powers(case: &Case, system: &System) -> Vec<Small> {
     let block_s = |kind| shortest_block_s(kind, &case.runs, case.rows);
     let of = |(id, blocks): (&'static str, f64)| {
         let column = system.column(|kind| {
-            let of_run = |(run, said): (&Recorded, &Said)| match made_of_motion(kind, run, said) {
+            let of_run = |(run, said): (&Recorded, &Said)| match comes_late(kind, run, said) {
                 Some(power) => late(run.measured.trace.time_s(), &power, blocks * block_s(kind)),
                 None => Vec::new(),
             };
@@ -197,14 +197,11 @@ pub fn torque_errors(case: &Case, system: &System) -> Vec<Small> {
     errors.into_iter().filter(|small| small.sd > 0.0).collect()
 }
 
-/// The modelled power of a balance, where it is made of the motion alone [W].
-fn made_of_motion(kind: Kind, run: &Recorded, said: &Said) -> Option<Vec<f64>> {
-    if run.force_is_known() {
-        return None;
-    }
+/// The modelled power of a balance that may come late: of an engine, or of what is made of the motion alone [W].
+fn comes_late(kind: Kind, run: &Recorded, said: &Said) -> Option<Vec<f64>> {
     match kind {
         Kind::Shaft => said.engine_w.clone(),
-        Kind::Charge => said.drawn_w(run),
+        Kind::Charge if !run.force_is_known() => said.drawn_w(run),
         Kind::Fuel => said.fuel_kg_s.is_some().then(|| said.fuel_w()),
         _ => None,
     }

@@ -188,7 +188,9 @@ fn silent(case: &Case) -> Vec<Vec<f64>> {
 
 /// Whether a cause is tried on a balance, in any run.
 pub fn tried_on(cause: &Cause, kind: Kind, system: &System) -> bool {
-    if !kind.among(cause.balances) {
+    // What an engine takes within itself never comes to its shaft.
+    let within = kind == Kind::Shaft && ["engine_friction", "cold_start"].contains(&cause.id);
+    if within || !kind.among(cause.balances) {
         return false;
     }
     let forced = told_by_force(cause, kind, system);

@@ -273,7 +273,7 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
         ("engine_speed", "rad/s", engine_speed),
         ("x", "m", of(&|run| run.position_m.clone())),
         ("t", "s", of(&|run| run.measured.trace.time_s().to_vec())),
-        ("heading", "rad", channel("heading_rad")),
+        ("heading", "rad", channel("heading_rad").filter(|runs| turns(runs))),
         ("kappa", "1/m", channel("curvature_per_m")),
         ("temperature", "°C", channel("air_temperature_c")),
         ("oil_temperature", "°C", channel("oil_temperature_c")),
@@ -291,6 +291,17 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
         })
     };
     offered.into_iter().filter_map(variable).collect()
+}
+
+/// Whether courses point to more than one direction and its opposite: of those a heading says no more than which of the two it is.
+fn turns(heading_rad: &[Vec<f64>]) -> bool {
+    /// Mean resultant length of the doubled angles beyond which all are of one line: within some 13° of it.
+    const ONE_LINE: f64 = 0.9;
+    let all = || heading_rad.iter().flatten();
+    let (north, east) = all().fold((0.0, 0.0), |(north, east), heading| {
+        (north + (2.0 * heading).cos(), east + (2.0 * heading).sin())
+    });
+    north.hypot(east) < ONE_LINE * all().count() as f64
 }
 
 /// Whether recorded speeds of the engine say more than the vehicle's: one that gears tie to the wheels turns as they do. They have
@@ -314,7 +325,14 @@ fn tells_more(case: &Case, engine_rad_s: &[Vec<f64>]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::enough;
+    use super::{enough, turns};
+
+    #[test]
+    fn to_and_fro_on_one_line_is_no_turn() {
+        let lane = vec![vec![0.3, 0.31, 0.29], vec![0.3 + std::f64::consts::PI; 3]];
+        assert!(!turns(&lane));
+        assert!(turns(&[vec![0.0, 0.5, 1.0, 1.5, 2.0, 2.5]]));
+    }
 
     #[test]
     fn of_many_rows_a_share_of_the_runs_is_taken_evenly() {

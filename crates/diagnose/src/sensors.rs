@@ -16,8 +16,6 @@ pub const PITCH: &str = "pitch";
 pub const PITCH_RAD_S2_M: f64 = 0.004;
 /// A scale that nobody would call wrong.
 const SMALL_SCALE: f64 = 0.005;
-/// A scale that sensors are usually wrong by.
-const USUAL_SCALE: f64 = 0.003;
 
 /// A fault that is free in every diagnosis.
 pub struct Small {
@@ -56,8 +54,8 @@ pub fn is_no_fault(case: &Case, id: &str, value: f64) -> bool {
 pub fn small_faults(case: &Case, system: &System) -> Result<Vec<Small>, DiagnoseError> {
     let small = [
         (Kind::Motion, "latency", small_latency_s(case)),
-        (Kind::Motion, "force_scale", USUAL_SCALE),
-        (Kind::Motion, "speed_scale", USUAL_SCALE),
+        (Kind::Motion, "force_scale", SMALL_SCALE),
+        (Kind::Motion, "speed_scale", SMALL_SCALE),
         (Kind::Parity, PITCH, PITCH_RAD_S2_M),
     ];
     let mut all = Vec::new();

@@ -90,7 +90,26 @@ impl Scenario {
     /// # Errors
     /// [`ScenarioError`] says what, where, and what was expected.
     pub fn read(path: &Path, registry: &Registry) -> Result<Self, ScenarioError> {
-        Self::of(Document::read(path)?, registry)
+        Self::of(Document::read(path)?, registry)?.held_within_bounds(registry)
+    }
+
+    /// Refuses bounds of free parameters at which there is no model.
+    fn held_within_bounds(self, registry: &Registry) -> Result<Self, ScenarioError> {
+        for (index, free) in self.free.iter().enumerate() {
+            for bound in [free.bounds.0, free.bounds.1].into_iter().filter(|bound| bound.is_finite()) {
+                if let Err(error) = self.model_with(&[(&free.path, bound)], registry) {
+                    let place = self.document.find(&format!("free.{index}.bounds"));
+                    let why = error.to_string();
+                    return Err(ScenarioError::Value {
+                        name: "bounds".to_owned(),
+                        found: format!("{bound}, at which `{}` is refused ({})", free.path, why.trim()),
+                        expected: "bounds at which the model can be".to_owned(),
+                        at: self.document.location(place.map_or(0, |node| node.span.start)),
+                    });
+                }
+            }
+        }
+        Ok(self)
     }
 
     /// As [`Scenario::read`], from a text; `name` stands for the file, `folder` is where its includes lie.
@@ -103,7 +122,7 @@ impl Scenario {
         folder: &Path,
         registry: &Registry,
     ) -> Result<Self, ScenarioError> {
-        Self::of(Document::of_text(name, text, folder)?, registry)
+        Self::of(Document::of_text(name, text, folder)?, registry)?.held_within_bounds(registry)
     }
 
     /// As [`Scenario::read`], from a document.

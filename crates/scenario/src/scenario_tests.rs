@@ -42,6 +42,14 @@ fn told(error: &ScenarioError, below: &str) -> String {
     error.told()
 }
 
+/// Resistance pushes nobody: a bound at which it would is refused where it stands, and not when a fit comes there.
+#[test]
+fn a_bound_at_which_there_is_no_model_is_refused() {
+    let error = broken("bounds: (0.0, 0.3)", "bounds: (-0.1, 0.3)");
+    let said = told(&error, "(-0.1, 0.3)");
+    assert!(said.contains("-0.1") && said.contains("ground.soil.coefficient"), "{said}");
+}
+
 #[test]
 fn a_scenario_says_what_it_says() {
     let scenario = read(GOOD).unwrap();

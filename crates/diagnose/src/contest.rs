@@ -108,7 +108,11 @@ impl State<'_> {
 
     /// The newest cause in its likeliest shape: the one that was judged was likeliest at the noise without it, which hides much.
     fn reshape(&self, one: &mut Contest, without: &Stand) {
-        let Some(newest) = one.stand.parts.last().filter(|part| part.spread.is_none()) else { return };
+        // Beside functions each shape would take long, and they follow what another shape leaves.
+        if one.stand.parts.iter().any(|part| part.spread.is_some()) {
+            return;
+        }
+        let Some(newest) = one.stand.parts.last() else { return };
         let likely = |trial: &Trial| {
             let mut parts = without.parts.clone();
             parts.push(Part { trial: trial.clone(), spread: None });

@@ -127,7 +127,13 @@ pub fn add_trial(
     let mut found: Vec<Part> = Vec::new();
     for (term, part) in cause.terms.iter().enumerate().filter(|(_, term)| term.linear) {
         let step = CAUSE_STEP * part.scale;
-        let column = if cause.form == Form::Measured {
+        let known = pool
+            .trials
+            .iter()
+            .find(|trial| cause.does_the_same((term, shape), &case.causes[trial.cause], &trial.shape));
+        let column = if let Some(known) = known {
+            pool.columns[known.columns[0]].clone()
+        } else if cause.form == Form::Measured {
             let mut column = fault(case, system, cause.id, shape.first().copied().unwrap_or(step))?;
             system.silence(&mut column, |kind| kind.among(cause.balances));
             column

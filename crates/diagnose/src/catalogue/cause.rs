@@ -6,6 +6,11 @@ use super::term::Term;
 use crate::balance::Kind;
 use crate::own::Own;
 
+/// What tyres that warm up are in proportion to.
+const WARMING: &str = "cold_coefficient";
+/// What a level that rises in the cold is in proportion to.
+const COLD: &str = "coefficient_per_k";
+
 /// What a finding is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
@@ -187,12 +192,26 @@ impl Cause {
         self
     }
 
-    /// Whether a term can be all that there is of it: tyres that warm up in any air, and a level that rises in the cold, are causes
-    /// of their own.
+    /// Whether a term can be all that there is of it.
     pub fn alone(&self, term: usize) -> bool {
-        const TYRES: [&str; 2] = ["cold_coefficient", "coefficient_per_k"];
+        self.terms[term].name != START && !self.is_of_two()
+    }
+
+    /// Whether it is two causes of its own in one: tyres that warm up in any air, and a level that rises in the cold.
+    pub fn is_of_two(&self) -> bool {
         let sizes = |name: &&str| self.terms.iter().any(|term| term.linear && term.name == *name);
-        self.terms[term].name != START && !TYRES.iter().all(sizes)
+        [WARMING, COLD].iter().all(sizes)
+    }
+
+    /// Whether one term of it does what the only term of another cause does, each in its own shape.
+    pub fn does_the_same(&self, (term, shape): (usize, &[f64]), other: &Self, other_shape: &[f64]) -> bool {
+        let name = self.terms[term].name;
+        let only = || other.terms.iter().filter(|term| term.linear).map(|term| term.name).eq([name]);
+        // How tyres warm up is nothing to the level.
+        self.is_of_two()
+            && other.id == self.id
+            && only()
+            && (name == COLD || shape.first() == other_shape.first())
     }
 
     /// Whether it is among those that the runs do not teach each other; one of them may still show it by itself.

@@ -49,7 +49,8 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
         consider(one.trial.cause, &one.trial.shape);
     }
     for (cause, shape, gain) in round.causes.iter().filter(|one| one.2 >= CLOSE * greatest).take(MOST) {
-        if *gain > 0.0 {
+        // What is of two causes finds its shape beside them, as one of theirs.
+        if *gain > 0.0 && !case.causes[*cause].is_of_two() {
             consider(*cause, shape);
         }
     }

@@ -3,6 +3,8 @@
 use super::setting::{ELECTRIC, found_of_scenario, recording_of_scenario};
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::Options;
+use headland_plugin::Registry;
+use headland_recording::Recording;
 use headland_trace::Origin;
 
 /// A tractor that drives a kilometre and more at several speeds.
@@ -48,10 +50,11 @@ fn road(number: u64) -> String {
     format!("grade(positions_m: {places:?}, grades: {slopes:?})")
 }
 
-/// A map of each road's slopes could take up the cold of its day: slopes that reach as far as a grid lets them are no reason to.
-#[test]
-fn a_resistance_that_rises_in_the_cold_is_told_beside_the_slopes_of_many_roads() {
-    let registry = headland_stock::registry();
+/// Resistance for each kelvin that the air of a day is colder [1/K].
+const PER_K: f64 = 4e-4;
+
+/// A drive on each of so many days between −2 and 31 °C, with what else is hidden on that day.
+fn of_many_days(days: u32, registry: &Registry, hidden: &dyn Fn(u32) -> String) -> Recording {
     let channels = ["speed_m_s", "position_m", "tractive_force_n"];
     let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
         "speed_m_s" => value + 0.02 * draws.normal(),
@@ -59,25 +62,49 @@ fn a_resistance_that_rises_in_the_cold_is_told_beside_the_slopes_of_many_roads()
         _ => value,
     };
     let mut all = None;
-    for number in 0..12_u32 {
+    for number in 0..days {
         let air_c = 31.0 - 3.0 * f64::from((number * 5) % 12);
-        let cold = format!("rolling_resistance(coefficient: {:?})", 4e-4 * (20.0 - air_c));
-        let hidden = format!("{}, {cold}", road(u64::from(number)));
+        let cold = format!("rolling_resistance(coefficient: {:?})", PER_K * (20.0 - air_c));
+        let hidden = format!("{}, {cold}", hidden(number));
         let sensor = (500 + u64::from(number), &noisy as _);
-        let mut recording = recording_of_scenario(&drive(&hidden), &registry, &channels, sensor);
+        let mut recording = recording_of_scenario(&drive(&hidden), registry, &channels, sensor);
         let mut run = recording.runs.remove(0);
         let samples = run.trace.len();
         run.trace.push("air_temperature_c", vec![air_c; samples], Origin::Measured).unwrap();
         (run.id, run.path, run.held_out) = (format!("day_{number}"), None, number % 4 == 3);
         all.get_or_insert(recording).runs.push(run);
     }
-    let found = found_of_scenario(&drive(""), &all.unwrap(), &Options::default(), &registry).unwrap();
+    all.unwrap()
+}
+
+/// Tyres that warm up from the temperature outside are one cause, and no oil beside the cold.
+#[test]
+fn tyres_that_warm_up_from_a_cold_day_are_one_cause() {
+    let registry = headland_stock::registry();
+    let warming = "rolling_temperature(cold_coefficient: 0.012, time_constant_s: 40)";
+    let recording = of_many_days(8, &registry, &|_| warming.to_owned());
+    let found = found_of_scenario(&drive(""), &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    let [tyres] = &said.findings[..] else { panic!("{}", said.answer) };
+    assert_eq!(tyres.id, "rolling_temperature", "{}", said.answer);
+    let value = |name: &str| tyres.parameters.iter().find(|one| one.name == name).unwrap().value;
+    assert!((value("cold_coefficient") / 0.012 - 1.0).abs() < 0.15, "{}", said.answer);
+    assert!((value("time_constant_s") / 40.0 - 1.0).abs() < 0.25, "{}", said.answer);
+    assert!((value("coefficient_per_k") / PER_K - 1.0).abs() < 0.1, "{}", said.answer);
+}
+
+/// A map of each road's slopes could take up the cold of its day: slopes that reach as far as a grid lets them are no reason to.
+#[test]
+fn a_resistance_that_rises_in_the_cold_is_told_beside_the_slopes_of_many_roads() {
+    let registry = headland_stock::registry();
+    let recording = of_many_days(12, &registry, &|number| road(u64::from(number)));
+    let found = found_of_scenario(&drive(""), &recording, &Options::default(), &registry).unwrap();
     let answer = &found.diagnosis.answer;
     let cold = found.diagnosis.findings.iter().find(|one| one.id == "rolling_temperature");
     let told = cold.unwrap_or_else(|| panic!("{answer}")).parameters.iter();
     let per_k =
         told.clone().find(|one| one.name == "coefficient_per_k").unwrap_or_else(|| panic!("{answer}"));
-    assert!((per_k.value / 4e-4 - 1.0).abs() < 0.3, "{per_k:?}");
+    assert!((per_k.value / PER_K - 1.0).abs() < 0.3, "{per_k:?}");
     // What goes along to another road: the tyres, and none of the slopes.
     let elsewhere = found.elsewhere.unwrap();
     assert!(elsewhere.contains("rolling_temperature") && !elsewhere.contains("grade("), "{elsewhere}");

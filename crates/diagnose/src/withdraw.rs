@@ -12,6 +12,7 @@ use crate::refine::{Cured, Refined, refine, spells};
 use crate::search::{Found, Rival};
 use crate::state::{Part, State};
 use crate::trial::Pool;
+use crate::words::each_once;
 use crate::{Case, DiagnoseError, System};
 
 /// An error that rises by less than this share rises by what a few runs are apart from the others.
@@ -336,23 +337,20 @@ fn is_nothing(cured: &Cured) -> bool {
 }
 
 /// What is said where what was found does harm.
-fn harmful(mut claimed: Vec<&str>) -> String {
-    claimed.dedup();
+fn harmful(claimed: Vec<&str>) -> String {
     format!(
         "Something is missing that nothing of what was tried explains: {} would explain a part of the rows and leaves the runs \
          as a whole worse than the scenario by itself, so nothing of it is claimed.",
-        claimed.join(" and ")
+        each_once(claimed)
     )
 }
 
 /// What is said where everything was taken back.
 fn nothing_left<'a>(claimed: impl Iterator<Item = &'a str>) -> String {
-    let mut names: Vec<&str> = claimed.collect();
-    names.dedup();
     format!(
         "Something is missing that these runs do not have in common: {} would explain those that were fitted and does \
          not help those held out, so nothing of it is claimed.",
-        names.join(" and ")
+        each_once(claimed)
     )
 }
 

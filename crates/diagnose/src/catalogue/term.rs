@@ -55,6 +55,11 @@ impl Term {
         self.within(value, value)
     }
 
+    /// Whether it is held.
+    pub fn is_held(&self) -> bool {
+        self.low >= self.high
+    }
+
     /// With another lower limit.
     pub fn no_less(self, low: f64) -> Self {
         Self { low, ..self }

@@ -10,7 +10,7 @@ mod channels;
 
 use crate::balance::System;
 use crate::refine::Refined;
-use crate::words::capital;
+use crate::words::{capital, each_once};
 use channels::{coasting, coasting_both_ways, forces, positions, powers, unforced};
 use headland_calibrate::statistics::{quantile_of_sorted, sorted};
 
@@ -48,15 +48,14 @@ pub fn withhold(case: &Case, refined: &mut Refined) -> Option<String> {
     if case.fit.iter().zip(&case.bears).any(|(fit, bears)| !fit && *bears) {
         return None;
     }
-    let mut names: Vec<&str> = refined.causes.iter().map(|cured| cured.cause.words).collect();
-    names.dedup();
+    let names = each_once(refined.causes.iter().map(|cured| cured.cause.words));
     refined.causes.clear();
     let runs = case.bears.iter().filter(|bears| **bears).count();
     let runs = if runs == 1 { "one run".to_owned() } else { format!("{runs} runs") };
     let fits = if names.is_empty() {
         String::new()
     } else {
-        format!(" {} would explain what was fitted, and so might much else.", capital(&names.join(" and ")))
+        format!(" {} would explain what was fitted, and so might much else.", capital(&names))
     };
     Some(format!(
         "With {runs} none can be held out, so no cause can be proven and none is claimed.{fits} Three runs are needed, \

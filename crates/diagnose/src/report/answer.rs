@@ -243,10 +243,10 @@ fn calibrated(case: &Case, refined: &Refined) -> Vec<Calibrated> {
 fn remarks(case: &Case, unproven: &[usize]) -> Vec<String> {
     let mut notes = Vec::new();
     if !unproven.is_empty() {
-        let names: Vec<String> = unproven.iter().map(|cause| words::plain(case.causes[*cause].id)).collect();
+        let names = words::each_once(unproven.iter().map(|cause| words::plain(case.causes[*cause].id)));
         notes.push(format!(
             "{} would explain each run by itself, but not one from the others; so nothing of it is claimed.",
-            words::capital(&names.join(" and "))
+            words::capital(&names)
         ));
     }
     let held = ids(case, false);

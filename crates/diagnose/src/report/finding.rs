@@ -319,7 +319,7 @@ fn parameters(cured: &Cured) -> Vec<ParameterReport> {
             .terms
             .iter()
             .zip(&cured.values)
-            .filter(|(_, value)| estimated(value))
+            .filter(|(term, value)| estimated(value) && !(term.name == "time_constant_s" && term.is_held()))
             .map(|(term, (value, ci))| one(term.name, *value, *ci, term.unit))
             .collect(),
     }

@@ -28,6 +28,17 @@ pub fn listed(all: &[String]) -> String {
     }
 }
 
+/// The same of names, each once.
+pub fn each_once<N: AsRef<str>>(names: impl IntoIterator<Item = N>) -> String {
+    let mut all: Vec<String> = Vec::new();
+    for name in names {
+        if !all.iter().any(|known| known == name.as_ref()) {
+            all.push(name.as_ref().to_owned());
+        }
+    }
+    listed(&all)
+}
+
 /// Whether words speak of several things: of 'slopes along the path', and not of 'a loss in the driveline'.
 fn several(words: &str) -> bool {
     let single = ["a ", "an ", "the "].iter().any(|article| words.starts_with(article));

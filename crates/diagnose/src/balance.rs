@@ -148,8 +148,6 @@ pub struct System {
     pub blocks_s: Vec<f64>,
     /// Variance that the mean of a row usually has by what lasts and is no physics, where that is known of a balance.
     pub usual: Vec<Option<f64>>,
-    /// Whether powers are made of nothing but motion.
-    pub of_motion: bool,
     /// The runs, by number, whose force is known most of the time.
     pub forced: Vec<bool>,
     /// Whether what a line between fuel and work leaves grows with its power.
@@ -211,13 +209,17 @@ impl System {
             residual: Vec::new(),
             blocks_s,
             usual,
-            of_motion: is_of_motion(runs),
             forced: runs.iter().map(Recorded::force_is_known).collect(),
             bent: false,
         };
         system.residual = system.residual_of(runs, said);
         system.listen(runs, said, fit);
         system
+    }
+
+    /// Whether powers are made of nothing but motion.
+    fn is_of_motion(&self) -> bool {
+        !self.forced.contains(&true)
     }
 
     /// Lets rows of fuel be as loud as they show themselves, by their power or by their speed.
@@ -242,7 +244,7 @@ impl System {
             let (chunks, left) = (&self.chunks[own.clone()], &self.residual[own.clone()]);
             loudness::grown(chunks, fit, left, &power[own.clone()], &size[own.clone()])
         };
-        let by_speed = if self.of_motion { grown(&speed) } else { None };
+        let by_speed = if self.is_of_motion() { grown(&speed) } else { None };
         let by_power = grown(&power);
         let gain = |one: &Option<(f64, Vec<Vec<f64>>)>| one.as_ref().map_or(0.0, |one| one.0);
         self.bent = gain(&by_power) > gain(&by_speed);
@@ -255,7 +257,7 @@ impl System {
 
     /// How the noise of a balance may come through: that of a power that is made of motion is the speed's more often than its own.
     fn shapes_of(&self, kind: Kind) -> Vec<Shape> {
-        if self.of_motion && kind.is_power() {
+        if self.is_of_motion() && kind.is_power() {
             vec![Shape::Differenced, Shape::Averaged]
         } else {
             vec![kind.shape()]

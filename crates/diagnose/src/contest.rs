@@ -113,11 +113,10 @@ impl State<'_> {
             return;
         }
         let Some(newest) = one.stand.parts.last() else { return };
-        let likely = |trial: &Trial| {
-            let mut parts = without.parts.clone();
-            parts.push(Part { trial: trial.clone(), spread: None });
-            self.likely(&parts, &one.stand.noises)
+        let with = |trial: &Trial| -> Vec<Part> {
+            without.parts.iter().cloned().chain([Part { trial: trial.clone(), spread: None }]).collect()
         };
+        let likely = |trial: &Trial| self.likely(&with(trial), &one.stand.noises);
         let alike = self.pool.trials.iter().filter(|trial| {
             let own = &newest.trial;
             trial.cause == own.cause && trial.terms == own.terms && trial.shape != own.shape
@@ -127,14 +126,9 @@ impl State<'_> {
         if likely(&newest.trial).is_some_and(|own| own >= greatest) {
             return;
         }
-        let mut parts = without.parts.clone();
-        parts.push(Part { trial: trial.clone(), spread: None });
-        let settled = self.settle(&parts, &one.stand.noises);
-        let better = settled.filter(|other| {
-            other.score > one.stand.score
-                && !self.impossible(&other.parts, &other.estimate)
-                && self.functions_possible(other)
-        });
+        let settled = self.settle(&with(trial), &one.stand.noises);
+        let better = settled
+            .filter(|other| other.score > one.stand.score && !self.impossible(&other.parts, &other.estimate));
         if let Some(better) = better {
             one.stand = better;
         }

@@ -401,7 +401,7 @@ fn nonlinear(
             let needed = if term.linear {
                 is_whole(&cured.cause) || cured.accepted.trial.terms.contains(&index)
             } else {
-                value != 0.0 && term.low < term.high
+                value != 0.0 && !term.is_held()
             };
             if needed {
                 let (value, (low, high), sd) = loosely(&cured.cause, index, value);

@@ -38,7 +38,7 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
     };
     let mut chosen: Vec<(usize, Vec<f64>)> = Vec::new();
     let mut consider = |cause: usize, shape: &[f64]| {
-        let free = case.causes[cause].terms.iter().any(|term| !term.linear && term.low < term.high);
+        let free = case.causes[cause].terms.iter().any(|term| !term.linear && !term.is_held());
         let known = chosen.iter().any(|(own, _)| *own == cause);
         let cause_of = &case.causes[cause];
         if free && !known && (cause_of.form == Form::Parameters || cause_of.by_run) {
@@ -164,21 +164,18 @@ fn likeliest(
 /// A cause of this shape, and others that fade by a time constant as well, each with it and with what it holds itself.
 fn alike(case: &Case, cause: usize, shape: &[f64]) -> Vec<(usize, Vec<f64>)> {
     let of_shape = |cause: usize| case.causes[cause].terms.iter().filter(|term| !term.linear);
-    let free = |cause: usize| of_shape(cause).filter(|term| term.low < term.high);
+    let free = |cause: usize| of_shape(cause).filter(|term| !term.is_held());
     let fades = |cause: usize| free(cause).map(|term| term.name).eq(["time_constant_s"]);
     let class = case.causes[cause].class;
-    let moved: Vec<f64> = of_shape(cause)
-        .zip(shape)
-        .filter(|(term, _)| term.low < term.high)
-        .map(|(_, value)| *value)
-        .collect();
+    let moved: Vec<f64> =
+        of_shape(cause).zip(shape).filter(|(term, _)| !term.is_held()).map(|(_, value)| *value).collect();
     let others = (0..case.causes.len()).filter(|other| {
         let same = case.causes[*other].class == class && case.causes[*other].form == Form::Parameters;
         *other != cause && same && fades(cause) && fades(*other)
     });
     let with = |other: usize| {
         let mut moved = moved.iter();
-        let value = |term: &Term| if term.low < term.high { moved.next().copied() } else { Some(term.low) };
+        let value = |term: &Term| if term.is_held() { Some(term.low) } else { moved.next().copied() };
         (other, of_shape(other).filter_map(value).collect())
     };
     std::iter::once((cause, shape.to_vec())).chain(others.map(with)).collect()
@@ -227,7 +224,7 @@ fn best(
         for _ in 0..MOST_MOVES {
             let mut moved = false;
             for place in 0..shape.len() {
-                if terms[place].low >= terms[place].high || shape[place] == 0.0 {
+                if terms[place].is_held() || shape[place] == 0.0 {
                     continue;
                 }
                 for factor in [factor, 1.0 / factor] {

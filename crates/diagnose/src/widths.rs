@@ -66,7 +66,7 @@ fn of_one(
     let shapes: Vec<usize> = (0..cause.terms.len()).filter(|term| !cause.terms[*term].linear).collect();
     for (number, term) in shapes.into_iter().enumerate() {
         let value = accepted.trial.shape.get(number).copied().unwrap_or(0.0);
-        if value == 0.0 || cause.terms[term].low >= cause.terms[term].high {
+        if value == 0.0 || cause.terms[term].is_held() {
             continue;
         }
         let mut at = |factor: f64| -> Result<Option<Weighed>, DiagnoseError> {

@@ -141,7 +141,7 @@ impl Cause {
     /// that its begin can be.
     pub fn possible(&self, shape: &[f64]) -> bool {
         let shapes = self.terms.iter().filter(|term| !term.linear).zip(shape);
-        let mut free = shapes.filter(|(term, _)| term.low < term.high);
+        let mut free = shapes.filter(|(term, _)| !term.is_held());
         if free.any(|(term, value)| !(term.low..=term.high).contains(value)) {
             return false;
         }

@@ -5,9 +5,9 @@ use crate::catalogue::Cause;
 use crate::noise::{Noises, Whiteners};
 use crate::recorded::Recorded;
 use crate::rows::Row;
-use crate::said::inputs;
+use crate::said::{Said, inputs};
 use crate::state::{Part, State};
-use crate::trial::{Pool, effect, lost_drive_n};
+use crate::trial::{Pool, effect, lost_drive_n, per_newton};
 use crate::{Case, DiagnoseError, System};
 use headland_calibrate::statistics::median;
 use headland_sim::Inputs;
@@ -22,10 +22,9 @@ pub struct Sought {
     pub kind: Kind,
     /// What the formula is.
     pub target: Target,
-    /// What one newton or one watt makes of the rows of each balance that it shows in.
-    per_unit: Vec<(Kind, f64)>,
-    /// Of what a share is lost, sample by sample [N, or W of a power], where a share is sought.
-    whole: Option<Vec<Vec<f64>>>,
+    /// What a formula of one makes of the rows of each balance that it shows in, sample by sample of every run: one watt or
+    /// one newton, or all that a share is lost of.
+    shows: Vec<(Kind, Vec<Vec<f64>>)>,
 }
 
 impl Sought {
@@ -36,28 +35,14 @@ impl Sought {
         kind: Kind,
         target: Target,
     ) -> Result<Option<Self>, DiagnoseError> {
-        if target == Target::Share && !case.driven() {
-            return Ok(None);
-        }
-        let whole = match (target, kind) {
-            (Target::Share, Kind::Motion) => Some(lost_drive_n(case)?),
-            (Target::Share, _) => Some(driven_w(case)),
-            _ => None,
+        let shows = match (target, kind) {
+            (Target::Share, Kind::Motion) if !case.driven() => return Ok(None),
+            (Target::Share, Kind::Motion) => vec![(kind, lost_drive_n(case)?)],
+            (Target::Force, _) => per_newton(case, system)?,
+            (Target::Share, _) => of_powers(case, system, kind, &driven_w(case))?,
+            (Target::Power, _) => of_powers(case, system, kind, &ones(case))?,
         };
-        // What takes power at the shaft takes fuel for it.
-        let shows: &[Kind] = match kind {
-            Kind::Shaft => &[Kind::Shaft, Kind::Fuel],
-            Kind::Fuel => &[Kind::Fuel],
-            _ => &[],
-        };
-        let shows = shows.iter().filter(|kind| system.has(**kind));
-        let mut per_unit = shows
-            .map(|kind| Ok((*kind, per_watt(case, system, *kind)?)))
-            .collect::<Result<Vec<_>, DiagnoseError>>()?;
-        if per_unit.is_empty() {
-            per_unit.push((kind, 1.0));
-        }
-        Ok(Some(Self { kind, target, per_unit, whole }))
+        Ok(shows.iter().any(|(shown, _)| *shown == kind).then_some(Self { kind, target, shows }))
     }
 
     /// What a balance's rows are made of, of what a formula says of a run; nothing where it does not show there.
@@ -67,32 +52,75 @@ impl Sought {
 
     /// As [`Sought::samples`], of every so many samples of the run.
     fn samples_of_every(&self, every: usize, kind: Kind, run: usize, said: &[f64]) -> Vec<f64> {
-        let Some((_, per_unit)) = self.per_unit.iter().find(|(own, _)| *own == kind) else {
+        let Some((_, of_one)) = self.shows.iter().find(|(own, _)| *own == kind) else { return Vec::new() };
+        // Where it shows in other runs only nothing is there.
+        if of_one[run].is_empty() {
             return Vec::new();
-        };
-        let whole = |index: usize| self.whole.as_ref().map_or(1.0, |whole| whole[run][every * index]);
-        said.iter().enumerate().map(|(index, value)| per_unit * whole(index) * value).collect()
+        }
+        said.iter().enumerate().map(|(index, value)| of_one[run][every * index] * value).collect()
     }
 
     /// What may stand in the formula. What is lost on the way of a force is no matter of places or times.
     fn variables(&self, case: &Case) -> Vec<Variable> {
         const OF_A_DRIVE: [&str; 5] = ["v", "temperature", "m", "engine_speed", "oil_temperature"];
-        let mut all = variables(case, self.kind);
+        let mut all = variables(case, if self.target == Target::Force { Kind::Motion } else { self.kind });
         if self.target == Target::Share {
             all.retain(|variable| OF_A_DRIVE.contains(&variable.name.as_str()));
+        }
+        if self.target == Target::Share && self.kind == Kind::Shaft {
+            let runs = case.runs.iter().zip(&case.nominal).map(|(run, said)| drive_n(run, said)).collect();
+            all.push(Variable { name: "F_drive".to_owned(), unit: "N".to_owned(), runs, finest: 0.0 });
         }
         all
     }
 }
 
-/// What the measured force of the drive takes, sample by sample [W]; nothing where none was measured.
-fn driven_w(case: &Case) -> Vec<Vec<f64>> {
-    let of_run = |run: &Recorded| {
-        let force_n = run.measured.trace.get("tractive_force_n");
-        let power_w = |(index, v): (usize, &f64)| force_n.map_or(0.0, |force_n| (force_n[index] * v).abs());
-        run.motion.value.iter().enumerate().map(power_w).collect()
+/// The force of the drive, sample by sample [N]: as measured, or as the motion asks for it where the vehicle does not roll freely.
+fn drive_n(run: &Recorded, said: &Said) -> Vec<f64> {
+    if let Some(force_n) = run.measured.trace.get("tractive_force_n") {
+        return force_n.to_vec();
+    }
+    let coasting = run.measured.trace.get("coasting");
+    let asked_n = |index: usize| {
+        let free = coasting.is_some_and(|coasting| coasting[index] >= 0.5);
+        let moved_n = said.effective_mass_kg[index] * run.acceleration_m_s2[index];
+        if free { 0.0 } else { moved_n + said.resistance_n[index] }
     };
-    case.runs.iter().map(of_run).collect()
+    (0..run.acceleration_m_s2.len()).map(asked_n).collect()
+}
+
+/// What the force of the drive takes, sample by sample [W].
+fn driven_w(case: &Case) -> Vec<Vec<f64>> {
+    let of_run = |(run, said): (&Recorded, &Said)| {
+        drive_n(run, said).iter().zip(&run.motion.value).map(|(force_n, v)| (force_n * v).abs()).collect()
+    };
+    case.runs.iter().zip(&case.nominal).map(of_run).collect()
+}
+
+/// One, at every sample of every run.
+fn ones(case: &Case) -> Vec<Vec<f64>> {
+    case.runs.iter().map(|run| vec![1.0; run.motion.value.len()]).collect()
+}
+
+/// What powers [W] make of the balance that they are drawn in, and of those in which that shows: what takes power at the shaft
+/// takes fuel for it.
+fn of_powers(
+    case: &Case,
+    system: &System,
+    kind: Kind,
+    power_w: &[Vec<f64>],
+) -> Result<Vec<(Kind, Vec<Vec<f64>>)>, DiagnoseError> {
+    let shows: &[Kind] = match kind {
+        Kind::Shaft => &[Kind::Shaft, Kind::Fuel],
+        Kind::Fuel => &[Kind::Fuel],
+        _ => return Ok(vec![(kind, power_w.to_vec())]),
+    };
+    let shown = |kind: &Kind| {
+        let watts = per_watt(case, system, *kind)?;
+        let times = |run: &Vec<f64>| run.iter().map(|power_w| watts * power_w).collect();
+        Ok((*kind, power_w.iter().map(times).collect()))
+    };
+    shows.iter().filter(|kind| system.has(**kind)).map(shown).collect()
 }
 
 /// Power at the shaft or in the fuel that a consumer of one watt takes, on average.

@@ -165,8 +165,7 @@ pub fn effect(
     step: f64,
     text: &(impl Fn(&Recorded) -> String + Sync),
 ) -> Result<Column, DiagnoseError> {
-    let kinds: Vec<Kind> =
-        system.kinds.iter().copied().filter(|kind| tried_on(cause, *kind, system)).collect();
+    let kinds = tried(cause, system);
     let after = case.said_beside(text, &case.study.priors(), &kinds)?;
     Ok(system.column(|kind| {
         if !kinds.contains(&kind) {
@@ -187,9 +186,30 @@ pub fn lost_drive_n(case: &Case) -> Result<Vec<Vec<f64>>, DiagnoseError> {
     Ok(difference(case, Kind::Motion, &after, SHARE))
 }
 
+/// What a newton against the motion makes of each balance that such a force shows in, sample by sample.
+pub fn per_newton(case: &Case, system: &System) -> Result<Vec<(Kind, Vec<Vec<f64>>)>, DiagnoseError> {
+    /// A force that any vehicle can bear [N].
+    const PULL_N: f64 = 100.0;
+    let pull = Cause::pull();
+    let kinds = tried(&pull, system);
+    let text = pull.written(&[PULL_N]);
+    let after = case.said_beside(&|_| text.clone(), &case.study.priors(), &kinds)?;
+    let of_kind = |kind: Kind| {
+        let mut samples = difference(case, kind, &after, PULL_N);
+        mute(&pull, kind, system, &mut samples);
+        (kind, samples)
+    };
+    Ok(kinds.into_iter().map(of_kind).collect())
+}
+
 /// Nothing, in every run.
 fn silent(case: &Case) -> Vec<Vec<f64>> {
     vec![Vec::new(); case.runs.len()]
+}
+
+/// The balances that a cause is tried on.
+fn tried(cause: &Cause, system: &System) -> Vec<Kind> {
+    system.kinds.iter().copied().filter(|kind| tried_on(cause, *kind, system)).collect()
 }
 
 /// Whether a cause is tried on a balance, in any run.

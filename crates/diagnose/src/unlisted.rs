@@ -40,8 +40,9 @@ pub fn unlisted(
     pool: &mut Pool,
     found: Found,
 ) -> Result<Found, DiagnoseError> {
-    /// Where power is drawn, and lost upstream of a measured force.
-    const POWERS: [(Kind, Target); 4] = [
+    /// Where power is drawn, and lost upstream of a measured force; what pulls where no force was measured.
+    const POWERS: [(Kind, Target); 5] = [
+        (Kind::Shaft, Target::Force),
         (Kind::Shaft, Target::Power),
         (Kind::Shaft, Target::Share),
         (Kind::Battery, Target::Power),
@@ -72,12 +73,16 @@ fn among(
     if !case.wanted("unlisted") {
         return Ok(found);
     }
-    // Where no force at the wheels was measured the shaft lacks a force as likely as a consumer, and a formula of watts would
-    // draw the course of a pull.
     let forced = case.runs.iter().any(|run| run.measured.trace.get("tractive_force_n").is_some());
     let mut found = found;
     for (kind, target) in sought.iter().copied() {
-        if kind == Kind::Shaft && !forced {
+        // Where no force at the wheels was measured the shaft lacks a force as likely as a consumer, and a formula of watts
+        // would draw the course of a pull.
+        let pulled = found.stand.parts.iter().any(|part| {
+            let cause = &case.causes[part.trial.cause];
+            cause.by_run || cause.form == Form::OverTime || part.spread.is_some()
+        });
+        if kind == Kind::Shaft && if forced { target == Target::Force } else { pulled } {
             continue;
         }
         // A consumer that is switched with time may take any course: where that is long, no law says more.
@@ -119,6 +124,17 @@ fn candidates(
     }
     for start in starts {
         let told = laws(case, system, pool, &start, &found.stand.noises, sought)?;
+        if std::env::var("DBG").is_ok() {
+            for l in &told {
+                eprintln!(
+                    "LAW {:?} {:?} {} {:?}",
+                    sought.kind,
+                    sought.target,
+                    l.text,
+                    l.constants.iter().map(|c| (c.name.clone(), c.value, c.sd)).collect::<Vec<_>>()
+                );
+            }
+        }
         if let Some(law) = told.first().filter(|_| start.is_empty() && rows <= MANY_ROWS) {
             candidates.extend(with_less(case, system, pool, law, sought));
         }
@@ -206,6 +222,22 @@ fn beside(
             let plainer =
                 state.numbers(&stand.parts) < state.numbers(&found.stand.parts) && more > -TOLERANCE;
             let doubtful = sound && as_short && (plainer || more > DOUBT * margin);
+            if std::env::var("DBG").is_ok() {
+                eprintln!(
+                    "CAND {:?} more {more:.1} margin {margin:.1} able {able} simpler {simpler} sound {sound} listed {} keeps {} widely {}",
+                    stand
+                        .parts
+                        .iter()
+                        .map(|p| (
+                            state.cause(&p.trial).id,
+                            state.cause(&p.trial).law.as_ref().map(|l| l.text.clone())
+                        ))
+                        .collect::<Vec<_>>(),
+                    state.is_listed(&stand),
+                    state.keeps_to_priors(&stand, &found.stand),
+                    state.works_widely(&stand)
+                );
+            }
             if able && clearly && better(&stand, &best) {
                 best = Some(stand);
             } else if (able || doubtful) && better(&stand, &as_good) {
@@ -347,7 +379,8 @@ impl State<'_> {
             let (mut squares, mut fourths, mut count) = (0.0, 0.0, 0usize);
             let mut of_runs = vec![0.0; self.fit.len()];
             for (chunk, rows) in self.system.chunks.iter().zip(&effect) {
-                if self.fit[chunk.run] && self.system.kind(chunk).among(self.cause(&part.trial).balances) {
+                let shown = self.system.kind(chunk).among(self.cause(&part.trial).balances);
+                if self.fit[chunk.run] && (shown || rows.norm_squared() > 0.0) {
                     squares += rows.norm_squared();
                     of_runs[chunk.run] += rows.norm_squared();
                     fourths += rows.iter().map(|value| value.powi(4)).sum::<f64>();
@@ -499,6 +532,8 @@ fn add(case: &mut Case, system: &System, pool: &mut Pool, law: &Law, sought: &So
     let column = system.column(|own| {
         law.prediction.iter().enumerate().map(|(run, said)| sought.samples(own, run, said)).collect()
     });
+    // A force shows in powers by the motion.
+    let kind = if target == Target::Force { Kind::Motion } else { kind };
     put(case, pool, Cause::of_law(LawText::new(law, target, kind), kind), column)
 }
 

@@ -10,6 +10,8 @@ use crate::variable::{Checked, Kind};
 const POWERS: [f64; 5] = [0.5, 1.0, 1.5, 2.0, 3.0];
 /// Where powers start that the data move.
 const FREE_POWERS: [f64; 2] = [1.25, 2.5];
+/// Powers of what sets in beyond a threshold.
+const HINGES: [u8; 2] = [1, 2];
 /// Scales of curved shapes, as shares of the greatest value.
 const SCALES: [f64; 5] = [0.06, 0.14, 0.3, 0.7, 1.5];
 /// Centres, as shares of the spread.
@@ -78,8 +80,10 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
     let edges = |all: &mut Vec<Factor>| {
         for share in CENTRES {
             let centre = of.low + share * of.spread();
-            all.push(make(Shape::Above, of.round_size(), centre));
-            all.push(make(Shape::Below, of.round_size(), centre));
+            for power in HINGES {
+                all.push(make(Shape::Above(power), of.round_size(), centre));
+                all.push(make(Shape::Below(power), of.round_size(), centre));
+            }
             all.extend(WIDTHS.map(|width| make(Shape::Bump, width * of.spread(), centre)));
             all.extend(EDGES.map(|width| make(Shape::Step, width * of.spread(), centre)));
         }
@@ -104,7 +108,7 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
             }
             curved(&mut all, &[Shape::Tanh], of.size());
             all.extend(
-                CENTRES.map(|share| make(Shape::Above, of.round_size(), of.low + share * of.spread())),
+                CENTRES.map(|share| make(Shape::Above(1), of.round_size(), of.low + share * of.spread())),
             );
         }
         Kind::Angle => all.extend(HARMONICS.map(|n| make(Shape::Harmonic(n), 1.0, 0.0))),
@@ -125,7 +129,7 @@ fn short(variables: &[Checked], index: usize) -> Vec<Factor> {
             all.extend([1.0, 2.0].map(|p| make(Shape::Power(p), of.round_size(), 0.0)));
             all.extend([0.1, 0.35].map(|share| make(Shape::Decay, share * of.size(), 0.0)));
             all.extend([0.1, 0.4].map(|share| make(Shape::Tanh, share * of.size(), 0.0)));
-            all.push(make(Shape::Above, of.round_size(), at(0.5)));
+            all.push(make(Shape::Above(1), of.round_size(), at(0.5)));
             all.extend([0.25, 0.5, 0.75].map(|share| make(Shape::Bump, 0.12 * of.spread(), at(share))));
         }
         Kind::Coordinate => {
@@ -146,7 +150,7 @@ fn short(variables: &[Checked], index: usize) -> Vec<Factor> {
             if of.negative {
                 all.push(make(Shape::SignedPower(1.0), of.round_size(), 0.0));
                 // One side alone: a wheel that rubs in bends one way.
-                all.extend([Shape::Above, Shape::Below].map(|shape| make(shape, of.round_size(), 0.0)));
+                all.extend([Shape::Above(1), Shape::Below(1)].map(|shape| make(shape, of.round_size(), 0.0)));
             }
             all.push(make(Shape::Power(2.0), of.round_size(), 0.0));
         }

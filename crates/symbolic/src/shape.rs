@@ -24,10 +24,10 @@ pub(crate) enum Shape {
     Decay,
     /// 1 − exp(−u/s): what grows towards a level.
     Rise,
-    /// max((u − c)/s, 0)
-    Above,
-    /// max((c − u)/s, 0)
-    Below,
+    /// max((u − c)/s, 0)^p, with a whole power p
+    Above(u8),
+    /// max((c − u)/s, 0)^p, with a whole power p
+    Below(u8),
     /// ½ (1 + tanh((u − c)/s))
     Step,
     /// exp(−((u − c)/s)²)
@@ -65,7 +65,7 @@ impl Shape {
                 &[Free::Scale]
             }
             Self::FreePower(_) => &[Free::Power],
-            Self::Above | Self::Below => &[Free::Centre],
+            Self::Above(_) | Self::Below(_) => &[Free::Centre],
             Self::Step | Self::Bump => &[Free::Centre, Free::Scale],
             Self::Pulse(_) => &[Free::Centre, Free::Scale, Free::Level],
             _ => &[],
@@ -136,8 +136,8 @@ impl Factor {
             Shape::Hyperbola => 1.0 / (1.0 + u / s),
             Shape::Decay => (-u / s).exp(),
             Shape::Rise => 1.0 - (-u / s).exp(),
-            Shape::Above => ((u - c) / s).max(0.0),
-            Shape::Below => ((c - u) / s).max(0.0),
+            Shape::Above(p) => ((u - c) / s).max(0.0).powi(i32::from(p)),
+            Shape::Below(p) => ((c - u) / s).max(0.0).powi(i32::from(p)),
             Shape::Step => 0.5 * (1.0 + ((u - c) / s).tanh()),
             Shape::Bump => (-((u - c) / s).powi(2)).exp(),
             Shape::Wave => return (TAU * u / s).sin_cos(),
@@ -169,8 +169,10 @@ impl Factor {
             Shape::Hyperbola => format!("(1 / (1 + {u} / {scale}))"),
             Shape::Decay => format!("exp(-{u} / {scale})"),
             Shape::Rise => format!("(1 - exp(-{u} / {scale}))"),
-            Shape::Above => format!("max(({u} - {centre}) / {scale}, 0)"),
-            Shape::Below => format!("max(({centre} - {u}) / {scale}, 0)"),
+            Shape::Above(1) => format!("max(({u} - {centre}) / {scale}, 0)"),
+            Shape::Below(1) => format!("max(({centre} - {u}) / {scale}, 0)"),
+            Shape::Above(p) => format!("max(({u} - {centre}) / {scale}, 0)^{p}"),
+            Shape::Below(p) => format!("max(({centre} - {u}) / {scale}, 0)^{p}"),
             Shape::Step => format!("0.5 * (1 + tanh(({u} - {centre}) / {scale}))"),
             Shape::Bump => format!("exp(-(({u} - {centre}) / {scale})^2)"),
             Shape::Wave => format!("sin({TAU} * {u} / {scale} + {phase})"),

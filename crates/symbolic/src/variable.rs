@@ -64,11 +64,15 @@ pub(crate) const ACCELERATION: &str = "acceleration";
 /// How fast the engine turns: what a force asks of it tells that, so that it may stand in the law of a power alone.
 const ENGINE_SPEED: &str = "engine_speed";
 
+/// The force at the wheels: by itself what a law of a force would have to say.
+const DRIVE: &str = "F_drive";
+
 /// Everything that may stand in a law.
-pub(crate) const KNOWN: [Known; 20] = [
+pub(crate) const KNOWN: [Known; 21] = [
     known("v", "m/s", "_m_s", Kind::Size),
     known(ACCELERATION, "m/s²", "_m_s2", Kind::Signed),
     known(ENGINE_SPEED, "rad/s", "_rad_s", Kind::Size),
+    known(DRIVE, "N", "_n", Kind::Signed),
     known("x", "m", "_m", Kind::Coordinate),
     known("t", "s", "_s", Kind::Coordinate),
     known("heading", "rad", "_rad", Kind::Angle),
@@ -152,8 +156,9 @@ pub(crate) fn check<'a>(
 ) -> Result<Vec<Checked<'a>>, SymbolicError> {
     /// A smaller share of the greatest value is rounding.
     const LEAST_SPREAD: f64 = 1e-9;
-    let allowed =
-        |known: &&Known| target != Target::Force || ![ACCELERATION, ENGINE_SPEED].contains(&known.name);
+    let allowed = |known: &&Known| {
+        target != Target::Force || ![ACCELERATION, ENGINE_SPEED, DRIVE].contains(&known.name)
+    };
     let mut all: Vec<Checked<'a>> = Vec::new();
     let mut names: Vec<&str> = Vec::new();
     for variable in variables {

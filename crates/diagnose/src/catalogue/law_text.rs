@@ -1,6 +1,6 @@
 //! An equation that was found, as a scenario writes it.
 
-use super::{Cause, Class, Form, Term};
+use super::{Cause, Class, Form, MOTION, Term};
 use crate::balance::Kind;
 use headland_symbolic::Target;
 
@@ -20,6 +20,9 @@ pub const CHANNELS: [(&str, &str); 13] = [
     ("slope", "grade"),
     ("m", "payload_kg"),
 ];
+
+/// What a law of a force is in the effect `expression`.
+const RESISTANCE: &str = "resistance";
 
 /// An equation that was found, as scenarios write it.
 #[derive(Clone, Debug)]
@@ -47,7 +50,7 @@ impl LawText {
         const PER_PIECE: f64 = 2.5;
         Self {
             role: match target {
-                Target::Force => "resistance",
+                Target::Force => RESISTANCE,
                 Target::Share if kind == Kind::Motion => "loss_share",
                 Target::Share | Target::Power => "auxiliary_power",
             },
@@ -67,26 +70,37 @@ impl LawText {
             cost: PER_PIECE * law.complexity as f64,
         }
     }
+
+    /// One number, in a role.
+    fn constant(role: &'static str, name: &str) -> Self {
+        Self {
+            role,
+            text: name.to_owned(),
+            constants_text: format!("{{\"{name}\": 1.0}}"),
+            constants: Vec::new(),
+            depends_on: Vec::new(),
+            terms: 1,
+            cost: 0.0,
+        }
+    }
 }
 
 impl Cause {
     /// A consumer that is always on, whether or not any is among the causes that are tried.
     pub fn consumer() -> Self {
-        let text = LawText {
-            role: "auxiliary_power",
-            text: "power_w".to_owned(),
-            constants_text: "{\"power_w\": 1.0}".to_owned(),
-            constants: Vec::new(),
-            depends_on: Vec::new(),
-            terms: 1,
-            cost: 0.0,
-        };
-        Self::of_law(text, Kind::Fuel)
+        Self::of_law(LawText::constant("auxiliary_power", "power_w"), Kind::Fuel)
+    }
+
+    /// A force against the motion that is always there.
+    pub fn pull() -> Self {
+        Self::of_law(LawText::constant(RESISTANCE, "force_n"), Kind::Motion)
     }
 
     /// A cause that is a law.
     pub fn of_law(law: LawText, kind: Kind) -> Self {
         let balances: &'static [Kind] = match kind {
+            // What resists shows in the powers that it takes; a share that is lost, in what is left of the force.
+            Kind::Motion if law.role == RESISTANCE => MOTION,
             Kind::Motion => &[Kind::Motion],
             Kind::Shaft | Kind::Fuel => &[Kind::Fuel],
             _ => &[Kind::Battery],

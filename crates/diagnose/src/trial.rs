@@ -4,6 +4,7 @@
 use crate::balance::{Kind, System, change};
 use crate::catalogue::{Cause, Form};
 use crate::gram::Column;
+use crate::look::MANY_ROWS;
 use crate::losses::{bent_engine, slow_powers, small_losses, torque_errors};
 use crate::recorded::Recorded;
 use crate::said::Said;
@@ -105,6 +106,8 @@ pub fn pool(case: &Case, system: &System) -> Result<Pool, DiagnoseError> {
         case.step(cause.id)?;
         let corrected = case.corrections.iter().any(|correction| correction.id == cause.id);
         let out = case.only.as_ref().is_some_and(|only| !only.contains(&number));
+        // What is of two causes shows as two where there are many rows, and to choose it takes two searches more.
+        let out = out || cause.is_of_two() && system.row_count() > MANY_ROWS;
         if out || corrected || case.no_faults.contains(&cause.id) {
             continue;
         }

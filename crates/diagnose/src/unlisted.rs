@@ -30,6 +30,8 @@ const DOUBT: f64 = 0.5;
 const EVERYWHERE: f64 = 0.04;
 /// And in so many runs, by that of the runs' sums.
 const SHARED: f64 = 1.2;
+/// A consumer that may take any course is not told by a formula beyond so many rows.
+const LONG_ROWS: usize = 8_000;
 /// Causes that hide each other bring beside one another up to so many times what the best of them brings alone.
 const HARDLY: f64 = 3.0;
 
@@ -90,7 +92,7 @@ fn among(
             let cause = &case.causes[part.trial.cause];
             kind != Kind::Motion && cause.form == Form::OverTime && cause.balances.contains(&kind)
         });
-        let any = any && system.row_count_of(kind) > MANY_ROWS;
+        let any = any && system.row_count_of(kind) > LONG_ROWS;
         // What a formula says of the shaft it says of the fuel.
         let said_already = kind == Kind::Fuel && system.has(Kind::Shaft);
         if system.has(kind)

@@ -12,6 +12,8 @@ pub(crate) struct Recorder {
     columns: Vec<Column>,
     /// What a carriage writes.
     row: Vec<f64>,
+    /// How many rows there will be, as far as that is known.
+    expected: usize,
 }
 
 /// A channel that takes no memory as long as nothing is in it.
@@ -27,7 +29,7 @@ struct Column {
 
 impl Column {
     /// Adds a value where `rows` are there already.
-    fn push(&mut self, value: f64, rows: usize) {
+    fn push(&mut self, value: f64, rows: usize, expected: usize) {
         if let Some(idle) = self.idle {
             if value.is_nan() && (idle.is_nan() || rows == 0) {
                 return;
@@ -36,6 +38,7 @@ impl Column {
                 self.idle = Some(0.0);
                 return;
             }
+            self.values.reserve_exact(expected.max(rows + 1));
             self.values.resize(rows, idle);
             self.idle = None;
         }
@@ -103,7 +106,15 @@ impl Recorder {
             time_s: Vec::new(),
             columns: names.into_iter().enumerate().map(column).collect(),
             row: Vec::new(),
+            expected: 0,
         }
+    }
+
+    /// The same with room for so many rows.
+    pub fn expecting(mut self, rows: usize) -> Self {
+        self.time_s.reserve_exact(rows);
+        self.expected = rows;
+        self
     }
 
     pub fn last_time_s(&self) -> Option<f64> {
@@ -133,23 +144,23 @@ impl Recorder {
             instant.hydraulic_power_w,
             instant.auxiliary_power_w,
         ];
-        let rows = self.time_s.len();
+        let (rows, expected) = (self.time_s.len(), self.expected);
         self.time_s.push(machine.time_s);
         // Group by group: one loop over a chain of them costs as much as the arithmetic of a step.
         let mut columns = self.columns.iter_mut();
         for (value, column) in motion.into_iter().zip(columns.by_ref()) {
-            column.push(value, rows);
+            column.push(value, rows, expected);
         }
         let coasting = f64::from(u8::from(instant.situation.coasting));
         let readings = instant.delivery.readings.channels().map(|(_, value)| value);
         if let Some(column) = columns.next() {
-            column.push(coasting, rows);
+            column.push(coasting, rows, expected);
         }
         for (value, column) in readings.into_iter().zip(columns.by_ref()) {
-            column.push(value, rows);
+            column.push(value, rows, expected);
         }
         for (value, column) in machine.states().iter().zip(columns.by_ref()) {
-            column.push(*value, rows);
+            column.push(*value, rows, expected);
         }
         if machine.model.axles.is_some() {
             let slip = std::iter::once(instant.slip);
@@ -157,19 +168,19 @@ impl Recorder {
                 [axle.load_n, axle.slip, axle.traction_n, axle.resistance_n, axle.sinkage_m]
             });
             for (value, column) in slip.chain(axles).zip(columns.by_ref()) {
-                column.push(value, rows);
+                column.push(value, rows, expected);
             }
         }
         if let Some(carriage) = &machine.carriage {
             self.row.clear();
             carriage.write(&mut self.row);
             for (value, column) in self.row.iter().zip(columns.by_ref()) {
-                column.push(*value, rows);
+                column.push(*value, rows, expected);
             }
         }
         let effects = machine.effect_actions().iter().flat_map(|action| effect_row(instant, action));
         for (value, column) in effects.zip(columns) {
-            column.push(value, rows);
+            column.push(value, rows, expected);
         }
     }
 

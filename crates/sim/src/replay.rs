@@ -153,7 +153,7 @@ pub fn replay(model: &Model, recorded: &Trace, how: &Replay) -> Result<Outcome, 
             })?,
         Drive::Torque | Drive::Force | Drive::Coast => tape.forward(model, how)?,
     };
-    Ok(Outcome { trace: mark_driven(&outcome.trace, how)?, ..outcome })
+    Ok(Outcome { trace: mark_driven(outcome.trace, how), ..outcome })
 }
 
 /// The recorded inputs.
@@ -295,7 +295,7 @@ impl<'a> Tape<'a> {
     ) -> Result<Outcome, ReplayError> {
         let mut machine = Machine::new(model, self.time_s[0], self.position_m[0], self.motion.value[0]);
         self.adopt_charge(&mut machine, 0);
-        let mut recorder = Recorder::new(&machine);
+        let mut recorder = Recorder::new(&machine).expecting(self.time_s.len());
         let mut before: Vec<f64> = Vec::new();
         for (index, &time_s) in self.time_s.iter().enumerate() {
             let (given, coasting) = self.given(model, index, 0.0);
@@ -387,7 +387,7 @@ fn finish(machine: &Machine, recorder: Recorder) -> Result<Outcome, ReplayError>
 }
 
 /// Marks the channels that agree with the recording because they were taken from it.
-fn mark_driven(trace: &Trace, how: &Replay) -> Result<Trace, TraceError> {
+fn mark_driven(trace: Trace, how: &Replay) -> Trace {
     let mut driven: Vec<&str> = match how.drive {
         Drive::Speed => vec!["speed_m_s", "position_m", "acceleration_m_s2"],
         Drive::Torque => vec!["motor_torque_n_m", "engine_torque_n_m", "tractive_force_n"],
@@ -395,10 +395,5 @@ fn mark_driven(trace: &Trace, how: &Replay) -> Result<Trace, TraceError> {
         Drive::Coast => vec!["coasting"],
     };
     driven.extend(how.also.iter().flat_map(|input| input.channels()));
-    let mut marked = Trace::new(trace.time_s().to_vec())?;
-    for channel in trace.channels() {
-        let origin = if driven.contains(&channel.name.as_str()) { Origin::Driven } else { channel.origin };
-        marked.push(channel.name.clone(), channel.values.clone(), origin)?;
-    }
-    Ok(marked)
+    trace.with_origin(Origin::Driven, |name| driven.contains(&name))
 }

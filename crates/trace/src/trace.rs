@@ -58,6 +58,15 @@ impl Trace {
         Ok(())
     }
 
+    /// The same, with those channels called from another origin that `is_of` names.
+    #[must_use]
+    pub fn with_origin(mut self, origin: Origin, is_of: impl Fn(&str) -> bool) -> Self {
+        for channel in self.channels.iter_mut().filter(|channel| is_of(&channel.name)) {
+            channel.origin = origin;
+        }
+        self
+    }
+
     /// Time of each sample [s].
     pub fn time_s(&self) -> &[f64] {
         &self.time_s

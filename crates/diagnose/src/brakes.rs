@@ -53,13 +53,16 @@ pub fn brakes(case: &Case, sound: &[Vec<bool>]) -> Vec<Event> {
     };
     let all = each(&|_, _, _, _| true);
     let driven = each(&|run, said, index, _| force(run, index) > 0.5 * said.resistance_n[index].max(0.0));
-    if all.len() < FEWEST || driven.len() < FEWEST {
+    // A switch says when; without one it is what drivers do beside driving.
+    let switched = case.runs.iter().any(|run| run.measured.trace.get("brake").is_some());
+    if all.len() < FEWEST || driven.len() < FEWEST && !switched {
         return Vec::new();
     }
+    let driven_n = if driven.is_empty() { 0.0 } else { DRIVEN * quantile_of_sorted(&driven, 0.98) };
     let middle = quantile_of_sorted(&all, 0.5);
     let deviations = sorted(&all.iter().map(|value| (value - middle).abs()).collect::<Vec<_>>());
     let sd_n = NORMAL_OF_MEDIAN * quantile_of_sorted(&deviations, 0.5);
-    let usual_n = (SIGMAS * sd_n).max(DRIVEN * quantile_of_sorted(&driven, 0.98)).max(0.0);
+    let usual_n = (SIGMAS * sd_n).max(driven_n);
     let of_run = |(number, excess): (usize, &Option<Vec<f64>>)| {
         let excess = excess.as_deref().unwrap_or(&[]);
         stretches(&case.runs[number], &case.nominal[number], excess, usual_n)
@@ -130,7 +133,8 @@ fn force(run: &Recorded, index: usize) -> f64 {
 fn excess_n(run: &Recorded, said: &Said, sound: &[bool], rolling: Rolling) -> Option<Vec<f64>> {
     run.force_n.as_ref()?;
     let trace = &run.measured.trace;
-    let coasting = trace.get("coasting");
+    // A switch tells of a coast-down that was braked after all.
+    let coasting = trace.get("coasting").filter(|_| rolling == Rolling::Left && trace.get("brake").is_none());
     let heard = heard(trace.time_s(), |index| {
         sound[index] && trace.get("speed_m_s").is_none_or(|speed| speed[index].is_finite())
     });
@@ -138,7 +142,7 @@ fn excess_n(run: &Recorded, said: &Said, sound: &[bool], rolling: Rolling) -> Op
         .map(|index| {
             let known = heard[index]
                 && run.motion.value[index] > SLOWEST_M_S
-                && (rolling == Rolling::Taken || coasting.is_none_or(|values| values[index] < 0.5));
+                && coasting.is_none_or(|values| values[index] < 0.5);
             let left = force(run, index)
                 - said.resistance_n[index]
                 - said.effective_mass_kg[index] * run.motion.slope[index];

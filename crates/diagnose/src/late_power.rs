@@ -185,8 +185,17 @@ fn told(pairs: &[Pair]) -> Option<(f64, f64)> {
     let near = (0..=steps).filter(|delay| left[*delay] < by_one);
     let farthest = near.map(|delay| delay.abs_diff(best)).max().unwrap_or(0).max(1);
     // A time constant takes the place of a part of a delay where it smooths a noisy model as well; both are late alike.
-    let whole_s = best as f64 * STEP_S + following_s[best];
+    let whole_s = (best as f64 + between(&left, best)) * STEP_S + following_s[best];
     Some((whole_s, (farthest as f64 * STEP_S / 2.0).max(following_s[best] / BETWEEN)))
+}
+
+/// Where the least of some values lies beside that of the grid, in steps: that of the parabola through it and its neighbours.
+fn between(values: &[f64], least: usize) -> f64 {
+    let Some((before, after)) = least.checked_sub(1).map(|at| values[at]).zip(values.get(least + 1)) else {
+        return 0.0;
+    };
+    let bend = before - 2.0 * values[least] + after;
+    if bend > 0.0 { (0.5 * (before - after) / bend).clamp(-0.5, 0.5) } else { 0.0 }
 }
 
 /// A signal without what lasts and without what is short.

@@ -126,17 +126,6 @@ fn candidates(
     }
     for start in starts {
         let told = laws(case, system, pool, &start, &found.stand.noises, sought)?;
-        if std::env::var("DBG").is_ok() {
-            for l in &told {
-                eprintln!(
-                    "LAW {:?} {:?} {} {:?}",
-                    sought.kind,
-                    sought.target,
-                    l.text,
-                    l.constants.iter().map(|c| (c.name.clone(), c.value, c.sd)).collect::<Vec<_>>()
-                );
-            }
-        }
         if let Some(law) = told.first().filter(|_| start.is_empty() && rows <= MANY_ROWS) {
             candidates.extend(with_less(case, system, pool, law, sought));
         }
@@ -224,22 +213,6 @@ fn beside(
             let plainer =
                 state.numbers(&stand.parts) < state.numbers(&found.stand.parts) && more > -TOLERANCE;
             let doubtful = sound && as_short && (plainer || more > DOUBT * margin);
-            if std::env::var("DBG").is_ok() {
-                eprintln!(
-                    "CAND {:?} more {more:.1} margin {margin:.1} able {able} simpler {simpler} sound {sound} listed {} keeps {} widely {}",
-                    stand
-                        .parts
-                        .iter()
-                        .map(|p| (
-                            state.cause(&p.trial).id,
-                            state.cause(&p.trial).law.as_ref().map(|l| l.text.clone())
-                        ))
-                        .collect::<Vec<_>>(),
-                    state.is_listed(&stand),
-                    state.keeps_to_priors(&stand, &found.stand),
-                    state.works_widely(&stand)
-                );
-            }
             if able && clearly && better(&stand, &best) {
                 best = Some(stand);
             } else if (able || doubtful) && better(&stand, &as_good) {

@@ -48,6 +48,26 @@ pub struct Estimate {
     pub log_evidence: f64,
 }
 
+impl Estimate {
+    /// What all else is estimated to be where the columns at some positions are known to be nought; the covariance stays as it is.
+    /// Source: the conditional mean of a normal distribution; Bishop, *Pattern Recognition and Machine Learning* (2006), (2.81).
+    pub fn without(&self, positions: &[usize]) -> Option<Self> {
+        let (count, own) = (positions.len(), &self.covariance);
+        let among = DMatrix::from_fn(count, count, |row, column| own[(positions[row], positions[column])]);
+        let values = DVector::from_fn(count, |row, _| self.beta[positions[row]]);
+        let weights = among.cholesky()?.solve(&values);
+        let moved = |index: usize| -> f64 {
+            positions
+                .iter()
+                .zip(weights.iter())
+                .map(|(position, weight)| own[(index, *position)] * weight)
+                .sum()
+        };
+        let beta = DVector::from_fn(self.beta.len(), |index, _| self.beta[index] - moved(index));
+        Some(Self { beta, ..self.clone() })
+    }
+}
+
 impl Whitened {
     /// Whitens residual and columns.
     pub fn new(chunks: &[Chunk], residual: &Column, columns: &[&Column], noise: &Noises) -> Option<Self> {

@@ -16,6 +16,8 @@ use crate::sensors::Small;
 use headland_sim::local_fit;
 use nalgebra::{DMatrix, DVector};
 
+/// What the names of all of them begin with.
+pub const SMALL_LOSS: &str = "battery_";
 /// The loss that goes with the square of speed.
 pub const SPEED_SQUARED: &str = "battery_speed_squared";
 /// A loss that nobody would call wrong, as a share of the drive's power, both as root mean squares.

@@ -3,6 +3,7 @@
 use crate::catalogue::{Cause, Class, Form, Term, spell};
 use crate::events::{Event, LEAST_GAIN, named};
 use crate::gram::Column;
+use crate::losses::SMALL_LOSS;
 use crate::mirror::{self, is_whole};
 use crate::profile::Function;
 use crate::recorded::Recorded;
@@ -134,9 +135,9 @@ pub fn refine(
     if refined.causes.iter().any(|cured| cured.function().is_some()) {
         return Ok(refined);
     }
-    // The constants of a law are what its search made of them.
+    // The constants of a law are what its search made of them. No scenario has the small losses that were free beside it.
     if refined.causes.iter().any(|cured| cured.cause.form == Form::Law) {
-        return Ok(refined);
+        return Ok(without_losses(pool, found).map_or(refined, |found| linear(case, pool, &found, &beyond)));
     }
     let mut new: Vec<Cured> = physics.iter().map(|place| refined.causes[*place].clone()).collect();
     for cured in new.iter_mut().filter(|cured| is_whole(&cured.cause)) {
@@ -193,6 +194,23 @@ pub fn refine(
         refined.causes[physics[place]].mirrored = Some(values);
     }
     Ok(refined)
+}
+
+/// What was found, as it is estimated where the small losses of an electric drive are none; nothing where there are none to begin
+/// with.
+fn without_losses(pool: &Pool, found: &Found) -> Option<Found> {
+    let own = pool.small.iter().filter(|(id, _)| id.starts_with(SMALL_LOSS));
+    let positions: Vec<usize> =
+        own.filter_map(|(_, column)| found.used.iter().position(|used| used == column)).collect();
+    if positions.is_empty() {
+        return None;
+    }
+    let mut other = found.clone();
+    if other.stand.estimate.beta == other.estimate.beta {
+        other.stand.estimate = other.stand.estimate.without(&positions)?;
+    }
+    other.estimate = other.estimate.without(&positions)?;
+    Some(other)
 }
 
 /// The interval about a value as wide as the wider of two: the one fit holds small faults of sensors where they are, the

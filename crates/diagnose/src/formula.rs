@@ -22,6 +22,8 @@ pub struct Sought {
     pub kind: Kind,
     /// What the formula is.
     pub target: Target,
+    /// Whether places were recorded.
+    pub placed: bool,
     /// What a formula of one makes of the rows of each balance that it shows in, sample by sample of every run: one watt or
     /// one newton, or all that a share is lost of.
     shows: Vec<(Kind, Vec<Vec<f64>>)>,
@@ -42,7 +44,8 @@ impl Sought {
             (Target::Share, _) => of_powers(case, system, kind, &driven_w(case))?,
             (Target::Power, _) => of_powers(case, system, kind, &ones(case))?,
         };
-        Ok(shows.iter().any(|(shown, _)| *shown == kind).then_some(Self { kind, target, shows }))
+        let placed = case.runs.iter().any(|run| run.measured.trace.get("position_m").is_some());
+        Ok(shows.iter().any(|(shown, _)| *shown == kind).then_some(Self { kind, target, placed, shows }))
     }
 
     /// What a balance's rows are made of, of what a formula says of a run; nothing where it does not show there.

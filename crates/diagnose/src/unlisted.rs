@@ -130,7 +130,7 @@ fn candidates(
             candidates.extend(with_less(case, system, pool, law, sought));
         }
         // Terms more may patch what a good one leaves.
-        let mut sound = told.into_iter().filter(|law| is_sound(law, sought.target));
+        let mut sound = told.into_iter().filter(|law| is_sound(law, sought));
         let Some(mut law) = sound.next() else { continue };
         let mut part = add(case, system, pool, &law, sought);
         for simpler in sound.filter(|_| rows <= MANY_ROWS) {
@@ -143,7 +143,7 @@ fn candidates(
         if let Some(settled) = state.settle(&with(&part), &found.stand.noises)
             && (rows <= MANY_ROWS || worth(&settled) > worth(&found.stand))
             && let Some(better) =
-                first_sound(laws(case, system, pool, &start, &settled.noises, sought)?, sought.target)
+                first_sound(laws(case, system, pool, &start, &settled.noises, sought)?, sought)
         {
             law = better;
             part = add(case, system, pool, &law, sought);
@@ -226,8 +226,7 @@ fn beside(
         let terms = state.pieces(&stand) - listed.len();
         if !listed.is_empty()
             && rows <= MANY_ROWS
-            && let Some(law) =
-                first_sound(laws(case, system, pool, &listed, &stand.noises, sought)?, sought.target)
+            && let Some(law) = first_sound(laws(case, system, pool, &listed, &stand.noises, sought)?, sought)
             && law.terms <= terms
         {
             let part = add(case, system, pool, &law, sought);
@@ -253,27 +252,30 @@ fn beside(
 }
 
 /// The first of some laws, where it is sound.
-fn first_sound(laws: Vec<Law>, target: Target) -> Option<Law> {
-    laws.into_iter().next().filter(|law| is_sound(law, target))
+fn first_sound(laws: Vec<Law>, sought: &Sought) -> Option<Law> {
+    laws.into_iter().next().filter(|law| is_sound(law, sought))
 }
 
 /// Whether a law draws no map, and each of its terms is known.
-fn is_sound(law: &Law, target: Target) -> bool {
-    !is_map(law, target) && !is_undetermined(law)
+fn is_sound(law: &Law, sought: &Sought) -> bool {
+    !is_map(law, sought.target, sought.placed) && !is_undetermined(law)
 }
 
 /// Whether a law draws a map: softer ground and slopes are that by their definition, and so is a consumer that is switched
 /// with time, beside something else or in several shapes of one. A wave that goes on all the way is none; places where it is on
-/// and others where it is off are patches.
-fn is_map(law: &Law, target: Target) -> bool {
+/// and others where it is off are patches. Nor is what fades with the way from the start, where nobody recorded places: a tyre or a
+/// tank that a run begins with.
+fn is_map(law: &Law, target: Target, placed: bool) -> bool {
     const WAVE: &str = "sin";
+    const FADES: &str = "exp(-x / ";
     const PULSE: &str = " - level";
     let drawn: &[&str] = if target == Target::Power { &["x", "t"] } else { &["x"] };
     let only =
         |term: &[&str]| drawn.iter().any(|name| !term.is_empty() && term.iter().all(|own| own == name));
     let terms = law.variables_of_terms();
     let patches = law.text.contains(PULSE) && terms.iter().any(|term| term.iter().all(|own| *own == "x"));
-    let alone = terms.len() == 1 && law.names(WAVE) && !patches;
+    let fades = !placed && law.text.contains(FADES);
+    let alone = terms.len() == 1 && (law.names(WAVE) || fades) && !patches;
     !alone && terms.iter().any(|term| only(term))
 }
 
@@ -440,7 +442,7 @@ fn with_less(
     let terms: Vec<Part> = law
         .each
         .iter()
-        .filter(|term| !is_map(term, sought.target))
+        .filter(|term| !is_map(term, sought.target, sought.placed))
         .map(|term| add(case, system, pool, term, sought))
         .collect();
     let mut all: Vec<Vec<Part>> = terms.iter().map(|term| vec![term.clone()]).collect();
@@ -657,8 +659,10 @@ mod tests {
 
     #[test]
     fn a_patch_is_a_map_and_what_goes_on_all_the_way_is_none() {
-        let told = |text: &str, target: Target| is_map(&law(text, &[]), target);
+        let told = |text: &str, target: Target| is_map(&law(text, &[]), target, true);
         assert!(told("a1_n * exp(-((x - x1_m) / x2_m)^2)", Target::Force));
+        let fades = law("a1_n * (1 - exp(-x / x1_m))", &[]);
+        assert!(is_map(&fades, Target::Force, true) && !is_map(&fades, Target::Force, false));
         assert!(!told("a1_n * sin(6.28 * x / x1_m + phase1_rad)", Target::Force));
         let pulse =
             |of: &str| format!("a1_n * 0.5 * (1 + tanh(20 * (sin(6.28 * ({of} - {of}1) / {of}2) - level1)))");

@@ -7,7 +7,7 @@ use crate::recorded::Recorded;
 use crate::rows::Row;
 use crate::said::{Said, inputs};
 use crate::state::{Part, State};
-use crate::trial::{Pool, effect, lost_drive_n, per_newton};
+use crate::trial::{Pool, Shown, effect, lost_drive_n, per_newton};
 use crate::{Case, DiagnoseError, System};
 use headland_calibrate::statistics::median;
 use headland_sim::Inputs;
@@ -26,7 +26,7 @@ pub struct Sought {
     pub placed: bool,
     /// What a formula of one makes of the rows of each balance that it shows in, sample by sample of every run: one watt or
     /// one newton, or all that a share is lost of.
-    shows: Vec<(Kind, Vec<Vec<f64>>)>,
+    shows: Shown,
 }
 
 impl Sought {
@@ -107,12 +107,7 @@ fn ones(case: &Case) -> Vec<Vec<f64>> {
 
 /// What powers [W] make of the balance that they are drawn in, and of those in which that shows: what takes power at the shaft
 /// takes fuel for it.
-fn of_powers(
-    case: &Case,
-    system: &System,
-    kind: Kind,
-    power_w: &[Vec<f64>],
-) -> Result<Vec<(Kind, Vec<Vec<f64>>)>, DiagnoseError> {
+fn of_powers(case: &Case, system: &System, kind: Kind, power_w: &[Vec<f64>]) -> Result<Shown, DiagnoseError> {
     let shows: &[Kind] = match kind {
         Kind::Shaft => &[Kind::Shaft, Kind::Fuel],
         Kind::Fuel => &[Kind::Fuel],

@@ -270,6 +270,17 @@ mod tests {
         assert!((r2 - 1.0 / 3.0).abs() < 1e-6, "{r2}");
     }
 
+    /// Where the slope beside a level is known to be nought, the level is what it is by itself.
+    #[test]
+    fn what_is_left_without_a_column_is_what_the_others_say_alone() {
+        let mut both = reduced(&[[1.0; 4], [0.0, 1.0, 2.0, 4.0]]);
+        both.vector = DVector::from_vec(vec![10.0, 27.0]);
+        let sd = [3.0, 2.0];
+        let alone = both.estimate(&[0], &sd).unwrap().beta[0];
+        let told = both.estimate(&[0, 1], &sd).unwrap().without(&[1]).unwrap();
+        assert!((told.beta[0] - alone).abs() < 1e-12 && told.beta[1].abs() < 1e-12, "{}", told.beta);
+    }
+
     /// Rows 1, 2, 3, 4 less twice the ones: 1 + 0 + 1 + 4.
     #[test]
     fn a_deviance_at_some_values_is_that_of_what_they_leave() {

@@ -189,8 +189,11 @@ pub fn lost_drive_n(case: &Case) -> Result<Vec<Vec<f64>>, DiagnoseError> {
     Ok(difference(case, Kind::Motion, &after, SHARE))
 }
 
+/// Samples of every run, by the balance that they show in.
+pub type Shown = Vec<(Kind, Vec<Vec<f64>>)>;
+
 /// What a newton against the motion makes of each balance that such a force shows in, sample by sample.
-pub fn per_newton(case: &Case, system: &System) -> Result<Vec<(Kind, Vec<Vec<f64>>)>, DiagnoseError> {
+pub fn per_newton(case: &Case, system: &System) -> Result<Shown, DiagnoseError> {
     /// A force that any vehicle can bear [N].
     const PULL_N: f64 = 100.0;
     let pull = Cause::pull();

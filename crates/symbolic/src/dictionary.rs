@@ -189,6 +189,7 @@ mod tests {
                 position_m: 3.0 * k - 20.0,
                 speed_m_s: 5.0 + 4.0 * (0.3 * k).sin(),
                 acceleration_m_s2: (0.13 * k).cos(),
+                tractive_force_n: 4000.0 * (0.11 * k).sin(),
                 mass_kg: 12_000.0 + 10.0 * k,
                 gravity_m_s2: 9.8 + 1e-4 * k,
                 place: Place {
@@ -220,6 +221,7 @@ mod tests {
         match name {
             "v" => at.speed_m_s,
             "acceleration" => at.acceleration_m_s2,
+            "F_drive" => at.tractive_force_n,
             "engine_speed" => at.engine_speed_rad_s.unwrap_or(f64::NAN),
             "x" => at.position_m,
             "t" => at.time_s,

@@ -115,3 +115,32 @@ fn a_level_of_drag_that_grows_with_speed_is_the_drivelines_the_grounds_or_a_brak
         }
     }
 }
+
+/// A foot on the brake in some coast-downs, of which a switch was logged: nothing drives there that it could be told from.
+#[test]
+fn a_logged_switch_tells_of_coast_downs_that_were_braked() {
+    const FORCE_N: f64 = 6000.0;
+    const FROM_S: f64 = 4.0;
+    const TO_S: f64 = 6.0;
+    let registry = headland_stock::registry();
+    let exact = |_: &str, value: f64, _: &mut Draws| value;
+    let braked = format!("drawbar_load(force_n: {FORCE_N:?}, from_s: {FROM_S:?}, to_s: {TO_S:?})");
+    let some = recording_of_scenario(&scenario(&braked, ""), &registry, &["speed_m_s"], (0, &exact));
+    let free = recording_of_scenario(&scenario("", ""), &registry, &["speed_m_s"], (0, &exact));
+    let mut recording = free.clone();
+    for (number, run) in recording.runs.iter_mut().enumerate() {
+        let own = if number % 3 == 0 { &some.runs[number] } else { &free.runs[number] };
+        let mut draws = Draws::new(5, number as u64);
+        let time_s = own.trace.time_s().to_vec();
+        let pressed = |time: &f64| f64::from(u8::from(number % 3 == 0 && (FROM_S..TO_S).contains(time)));
+        let switch = time_s.iter().map(pressed).collect();
+        let speed = own.trace.get("speed_m_s").unwrap().iter().map(|v| v + 0.02 * draws.normal()).collect();
+        run.trace = Trace::new(time_s).unwrap();
+        run.trace.push("speed_m_s", speed, Origin::Measured).unwrap();
+        run.trace.push("brake", switch, Origin::Measured).unwrap();
+    }
+    let found = found_of_scenario(&scenario("", ""), &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    assert!(named(&found, "braking"), "{}", said.answer);
+    assert!((said.findings[0].parameters[0].value - FORCE_N).abs() < 0.1 * FORCE_N, "{}", said.answer);
+}

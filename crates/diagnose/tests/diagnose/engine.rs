@@ -57,23 +57,25 @@ fn an_engine_that_was_switched_off_is_no_mismatch() {
     }
 }
 
-/// A flag tells when a vehicle rolls freely, and nothing tells what drives it else: the torque of the engine shows what is lost
-/// on the way to the wheels.
-#[test]
-fn a_loss_between_engine_and_wheels_is_told_beside_a_flag_of_coasting() {
-    const STANDS: &str = r"cycle: [
+/// Drives that roll freely now and then.
+const STANDS: &str = r"cycle: [
         Reach(speed_m_s: 6, acceleration_m_s2: 0.4), Hold(for_s: 20), Reach(speed_m_s: 0, acceleration_m_s2: 0.4),
         Stand(until: Elapsed(for_s: 60)),
         Reach(speed_m_s: 4, acceleration_m_s2: 0.3), Hold(for_s: 20), Reach(speed_m_s: 0, acceleration_m_s2: 0.4),
     ],";
-    const ROLLS: &str = r"start: (position_m: 0, speed_m_s: 3),
+const ROLLS: &str = r"start: (position_m: 0, speed_m_s: 3),
     cycle: [
         Reach(speed_m_s: 7, acceleration_m_s2: 0.3), Hold(for_s: 15), Coast(until: SpeedBelow(speed_m_s: 3)),
         Reach(speed_m_s: 9, acceleration_m_s2: 0.3), Hold(for_s: 15), Coast(until: SpeedBelow(speed_m_s: 4)),
     ],";
-    const RUNS: &str = r#"runs: [(id: "f0", with: {}), (id: "f1", with: {}), (id: "f2", with: {})"#;
-    const APART: &str = r#"runs: [(id: "f0", with: {}), (id: "f1", with: {"cycle.0.speed_m_s": 5.0}),
+const RUNS: &str = r#"runs: [(id: "f0", with: {}), (id: "f1", with: {}), (id: "f2", with: {})"#;
+const APART: &str = r#"runs: [(id: "f0", with: {}), (id: "f1", with: {"cycle.0.speed_m_s": 5.0}),
         (id: "f2", with: {"cycle.3.speed_m_s": 6.0})"#;
+
+/// A flag tells when a vehicle rolls freely, and nothing tells what drives it else: the torque of the engine shows what is lost
+/// on the way to the wheels.
+#[test]
+fn a_loss_between_engine_and_wheels_is_told_beside_a_flag_of_coasting() {
     let registry = headland_stock::registry();
     let text =
         SCENARIO.replacen(STANDS, ROLLS, 1).replacen(RUNS, APART, 1).replacen("sd: 2000", "sd: 700", 1);
@@ -94,4 +96,28 @@ fn a_loss_between_engine_and_wheels_is_told_beside_a_flag_of_coasting() {
     assert!(diagnosis.findings.iter().all(|finding| finding.id != "engine_friction"), "{}", diagnosis.answer);
     // What nothing drives forward is told by the power of the engine.
     assert_eq!(diagnosis.fit.signal, "engine_power_w");
+}
+
+/// What pulls beyond a speed with the square of what is above it, of which only the engine's torque and the coast-downs between tell:
+/// a threshold and the changes of a gear stood for it.
+#[test]
+fn a_force_that_nobody_listed_is_told_by_the_torque_of_an_engine() {
+    const LAW: &str = r#"expression(resistance: "a_n * max((v - v0_m_s) / v0_m_s, 0)^2", constants: {"a_n": 9000.0, "v0_m_s": 4.0})"#;
+    let registry = headland_stock::registry();
+    let text =
+        SCENARIO.replacen(STANDS, ROLLS, 1).replacen(RUNS, APART, 1).replacen("sd: 2000", "sd: 700", 1);
+    let truth = text.replacen("    free:", &format!("    effects: [{LAW}],\n    free:"), 1);
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.01 * draws.normal(),
+        "engine_torque_n_m" => value + 4.0 * draws.normal(),
+        "engine_speed_rad_s" => value + 0.2 * draws.normal(),
+        _ => value,
+    };
+    let channels = ["speed_m_s", "engine_torque_n_m", "engine_speed_rad_s", "coasting"];
+    let recording = recording_of_scenario(&truth, &registry, &channels, (43, &noisy));
+    let found = found_of_scenario(&text, &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    assert!(named(&found, "unlisted"), "{}", said.answer);
+    let told = said.findings.iter().find(|finding| finding.id == "unlisted").unwrap();
+    assert!(told.equation.starts_with("F = "), "{}", told.equation);
 }

@@ -24,6 +24,8 @@ pub struct Reconstructed {
     pub unit: &'static str,
     /// One series for each run, sample by sample.
     pub runs: Vec<Vec<f64>>,
+    /// The force on the vehicle, forward, where it was found by the power that it takes [N].
+    pub forces_n: Option<Vec<Vec<f64>>>,
 }
 
 /// Errors of one signal over some runs.
@@ -244,10 +246,22 @@ pub fn reconstruct(
     };
     // What shows in the accelerometer is a force to the vehicle as well.
     let kind = if unit == "n" { Kind::Motion } else { kind };
+    let runs = along(case, cured, refined, kind)?;
+    let acts = |runs: &Vec<Vec<f64>>| runs.iter().flatten().any(|force_n| *force_n != 0.0);
+    let forces_n = if unit == "w" && cured.events.is_empty() {
+        Some(along(case, cured, refined, Kind::Motion)?).filter(acts)
+    } else {
+        None
+    };
+    Ok(Reconstructed { id, unit, runs, forces_n })
+}
+
+/// What an effect does to a balance along every run, sample by sample: forces forward, as in every trace, so that what
+/// resists is negative; powers are what is taken.
+fn along(case: &Case, cured: &Cured, refined: &Refined, kind: Kind) -> Result<Vec<Vec<f64>>, DiagnoseError> {
     let values = refined.values();
     let bare = case.said(case.study.scenario(), &values)?;
-    // Forces are told forward, as in every trace: what resists is negative. Powers are what is taken.
-    let way = if unit == "n" { 1.0 } else { -1.0 };
+    let way = if kind == Kind::Motion { 1.0 } else { -1.0 };
     let told = |after: &[Said]| -> Vec<Vec<f64>> {
         let of_run = |(run, (before, after)): (&Recorded, (&Said, &Said))| {
             if kind == Kind::Voltage {
@@ -264,7 +278,7 @@ pub fn reconstruct(
         };
         case.runs.iter().zip(bare.iter().zip(after)).map(of_run).collect()
     };
-    let runs = if !cured.events.is_empty() {
+    if !cured.events.is_empty() {
         let of_run = |(run, recorded): (usize, &Recorded)| -> Vec<f64> {
             let own: Vec<&Event> = cured.events.iter().filter(|event| event.run == run).collect();
             let at = |time: &f64| {
@@ -273,7 +287,7 @@ pub fn reconstruct(
             };
             recorded.measured.trace.time_s().iter().map(at).collect()
         };
-        case.runs.iter().enumerate().map(of_run).collect()
+        Ok(case.runs.iter().enumerate().map(of_run).collect())
     } else if let Some(function) = cured.function() {
         let even = cured.cause.terms[0].scale;
         let text = cured.cause.constant(even, &cured.accepted.trial.shape);
@@ -290,12 +304,11 @@ pub fn reconstruct(
                 *sample *= value / even;
             }
         }
-        series
+        Ok(series)
     } else {
         let effects = vec![(cured.cause.clone(), cured.values())];
-        told(&said_with_all(case, &case.runs, &effects, &values)?)
-    };
-    Ok(Reconstructed { id, unit, runs })
+        Ok(told(&said_with_all(case, &case.runs, &effects, &values)?))
+    }
 }
 
 /// What a sensor's fault adds to its channel.
@@ -320,7 +333,7 @@ fn sensor_error(case: &Case, id: &'static str, value: f64) -> Result<Reconstruct
             _ => vec![f64::NAN; raw.measured.trace.len()],
         }
     });
-    Ok(Reconstructed { id, unit, runs: runs.collect() })
+    Ok(Reconstructed { id, unit, runs: runs.collect(), forces_n: None })
 }
 
 /// Longest window in which a long run is driven forward [s].

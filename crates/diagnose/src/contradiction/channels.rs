@@ -215,7 +215,7 @@ impl Pairs {
 
 /// What drives against what is moved: the mass that force and acceleration show.
 pub fn forces(case: &Case, system: &System) -> Option<String> {
-    let (mut driving, mut everywhere) = (Pairs::default(), Pairs::default());
+    let (mut driving, mut everywhere) = (Vec::new(), Pairs::default());
     let mut masses = Vec::new();
     let mut rows: Vec<(f64, f64)> = Vec::new();
     for chunk in system.chunks.iter().filter(|chunk| system.kind(chunk) == Kind::Motion) {
@@ -232,16 +232,16 @@ pub fn forces(case: &Case, system: &System) -> Option<String> {
             let drives = mean(&|row| row.mean(force));
             if !free && drives.is_finite() && needed.is_finite() && gains.is_finite() {
                 everywhere.all.push((gains, needed));
-                rows.push((drives, 0.0));
+                rows.push((drives, mean(&|row| row.mean(speed))));
                 masses.push(mean(&|row| row.mean(&said.effective_mass_kg)));
             }
         }
     }
     let strongest = rows.iter().map(|(force, _)| *force).fold(0.0, f64::max);
-    for ((force, _), pair) in rows.iter().zip(&everywhere.all) {
+    for ((force, speed), pair) in rows.iter().zip(&everywhere.all) {
         // Where brakes may slow the vehicle down, force says nothing of its mass.
         if *force > 0.05 * strongest && pair.0 > -SPEEDS_UP_M_S2 {
-            driving.all.push(*pair);
+            driving.push((*speed, *pair));
         }
     }
     if let Some((_, together)) = everywhere.slope()
@@ -253,14 +253,19 @@ pub fn forces(case: &Case, system: &System) -> Option<String> {
                 .to_owned(),
         );
     }
-    let (low, together) = driving.slope()?;
-    if together < TOGETHER_ENOUGH {
-        return None;
-    }
-    // Noise of the acceleration lowers the one, other forces raise the other: the mass lies between them.
-    let high = low / together;
     let mass = median(&masses);
-    let another = low > OTHER_VEHICLE * mass || high < mass / OTHER_VEHICLE;
+    // Noise of the acceleration lowers the one, other forces raise the other: the mass lies between them.
+    let shown = |driving: &[(f64, (f64, f64))]| {
+        let pairs = Pairs { all: driving.iter().map(|(_, pair)| *pair).collect() };
+        let (low, together) = pairs.slope().filter(|(_, together)| *together >= TOGETHER_ENOUGH)?;
+        let high = low / together;
+        (low > OTHER_VEHICLE * mass || high < mass / OTHER_VEHICLE).then_some((low, high))
+    };
+    let (low, high) = shown(&driving)?;
+    // A mass is the same at every speed; what is lost of a force need not be.
+    driving.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let (slower, faster) = driving.split_at(driving.len() / 2);
+    let another = [slower, faster].iter().all(|part| part.len() < FEWEST_ROWS || shown(part).is_some());
     another.then(|| {
         format!(
             "The recording is not of this vehicle, or its force is not in the unit that it claims: force and \

@@ -28,6 +28,10 @@ pub fn effects(case: &Case, proof: &Proof, bands: &[Option<Banded>]) -> Result<V
                 trace.push(format!("{name}_low"), side(-1.0), Origin::Predicted)?;
                 trace.push(format!("{name}_high"), side(1.0), Origin::Predicted)?;
             }
+            let force = format!("{}_n", effect.id);
+            if let (Some(forces_n), None) = (&effect.forces_n, trace.get(&force)) {
+                trace.push(force, forces_n[index].clone(), Origin::Predicted)?;
+            }
         }
         runs.push(Run { id: drive.measured.id.clone(), trace: in_rows(&trace, &case.logged_s[index])? });
     }

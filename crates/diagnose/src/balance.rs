@@ -491,6 +491,7 @@ fn usable(kind: Kind, run: &Recorded, said: &Said) -> Vec<bool> {
     let stands_in = |i: usize| run.stands_in.get(i).copied().unwrap_or(false);
     // From one speed to the other is no change of motion.
     let joins = |i: usize| stands_in(i) != stands_in(i.saturating_sub(1));
+    let overruns = overruns(run, said);
     (0..trace.len())
         .map(|i| {
             let moving = run.motion.value[i].abs() > SLOWEST_M_S && speed[i].is_finite();
@@ -509,7 +510,7 @@ fn usable(kind: Kind, run: &Recorded, said: &Said) -> Vec<bool> {
                     finite(run.engine_w.as_deref())
                         && finite(said.engine_w.as_deref())
                         && run.measured.compared[i]
-                        && !overruns(run, said, i)
+                        && !overruns[i]
                 }
                 Kind::Charge => {
                     run.charge_j.is_some()
@@ -533,7 +534,7 @@ fn usable(kind: Kind, run: &Recorded, said: &Said) -> Vec<bool> {
                     finite(channel("fuel_rate_kg_s"))
                         && finite(said.fuel_kg_s.as_deref())
                         && run.measured.compared[i]
-                        && !overruns(run, said, i)
+                        && !overruns[i]
                 }
             }
         })

@@ -147,6 +147,15 @@ fn a_recording_of_another_vehicle_is_no_finding() {
 }
 
 #[test]
+fn a_force_of_which_more_is_lost_the_faster_it_goes_is_that_of_this_vehicle() {
+    let lossy = changed(&recorded(0.07, ""), "tractive_force_n", |value, trace, index| {
+        value * (1.0 + 0.25 * trace.get("speed_m_s").unwrap()[index])
+    });
+    let said = found(&lossy, &Options::default()).unwrap().diagnosis.answer;
+    assert!(!said.contains("not of this vehicle"), "{said}");
+}
+
+#[test]
 fn a_force_that_drives_the_other_way_is_no_finding() {
     let said = refused(&changed(&recorded(0.07, ""), "tractive_force_n", |value, _, _| -value));
     assert!(said.contains("contradict each other"), "{said}");

@@ -141,6 +141,25 @@ fn renews(values: &[f64]) -> bool {
         || coarse(&sizes) && rough(&sizes) && taken_back(&bends) > CHANGES_TAKEN_BACK
 }
 
+/// Stretches, first and last sample, in which a channel stays the same for too long while the vehicle is `moving`: what it does
+/// while the vehicle stands still may well stay as it is. One with a noise of its own never does.
+fn stuck_while(moving: &[bool], time_s: &[f64], values: &[f64], own_noise: bool) -> Vec<(usize, usize)> {
+    let equal = still(values);
+    let enough = if own_noise { 0.0 } else { HELD * usual_length(&equal, values.len()) };
+    let leaps = leaping(values);
+    let long = |(from, to): &(usize, usize)| {
+        let (samples, long_s) = if leaps(*from, *to) {
+            (STUCK_SAMPLES_BEFORE_A_LEAP, STUCK_BEFORE_A_LEAP_S)
+        } else {
+            (STUCK_SAMPLES, STUCK_S)
+        };
+        let moved = moving[*from..=*to].iter().filter(|moving| **moving).count().saturating_sub(1);
+        let moved_s = (time_s[*to] - time_s[*from]) * moved as f64 / (to - from) as f64;
+        values[*from] != 0.0 && moved >= samples && moved as f64 >= enough && moved_s >= long_s
+    };
+    equal.iter().copied().filter(long).collect()
+}
+
 /// A channel that sticks, in all runs; its samples are not `usable`.
 pub fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<Fault> {
     let mut stretches = Vec::new();
@@ -151,28 +170,11 @@ pub fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Optio
         let trace: &Trace = &drive.measured.trace;
         let Some(values) = own(drive, name) else { continue };
         let time_s = trace.time_s();
-        let equal = still(values);
-        let own_noise = noisy(values, &equal);
+        let own_noise = noisy(values, &still(values));
         noisy_everywhere &= own_noise || renews(values);
-        let enough = if own_noise { 0.0 } else { HELD * usual_length(&equal, values.len()) };
         let leaps = leaping(values);
-        let long: Vec<(usize, usize)> = equal
-            .iter()
-            .copied()
-            .filter(|(from, to)| {
-                let moving = (*from..=*to).all(|index| drive.motion.value[index] > SLOWEST_M_S);
-                let (samples, long_s) = if leaps(*from, *to) {
-                    (STUCK_SAMPLES_BEFORE_A_LEAP, STUCK_BEFORE_A_LEAP_S)
-                } else {
-                    (STUCK_SAMPLES, STUCK_S)
-                };
-                moving
-                    && values[*from] != 0.0
-                    && to - from >= samples
-                    && (to - from) as f64 >= enough
-                    && time_s[*to] - time_s[*from] >= long_s
-            })
-            .collect();
+        let moving: Vec<bool> = drive.motion.value.iter().map(|speed_m_s| *speed_m_s > SLOWEST_M_S).collect();
+        let long = stuck_while(&moving, time_s, values, own_noise);
         if long.is_empty() {
             continue;
         }
@@ -219,6 +221,19 @@ mod tests {
         assert!(!told(&stuck_at(100, 0.0)), "a smooth channel may stay where it is");
         let held: Vec<f64> = stuck_at(500, 0.01).iter().flat_map(|value| [*value; 20]).collect();
         assert!(!told(&held), "a channel that is renewed slowly is not stuck");
+    }
+
+    #[test]
+    fn a_channel_sticks_that_stays_the_same_while_the_vehicle_moves_though_it_stops_meanwhile() {
+        let time_s: Vec<f64> = (0..400).map(|index| 0.1 * f64::from(index)).collect();
+        let values = stuck_at(100, 0.01);
+        let stuck = |stops: std::ops::Range<usize>| {
+            let moving: Vec<bool> = (0..400).map(|index| !stops.contains(&index)).collect();
+            stuck_while(&moving, &time_s, &values, true)
+        };
+        assert_eq!(stuck(0..0), [(100, 129)]);
+        assert_eq!(stuck(105..115), [(100, 129)]);
+        assert_eq!(stuck(98..127), [], "at a standstill a reading may stay as it is");
     }
 
     /// On its way down by 0.08 a sample, held for ten samples: it catches up with what it would have come meanwhile.

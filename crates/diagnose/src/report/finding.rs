@@ -135,7 +135,8 @@ impl FindingReport {
 
 /// What a diagnosis says in a word. Beside what is certain, one cause in doubt leaves open what is missing; it takes nothing
 /// from a sensor's fault. Where far more than noise is left, something is missing all the same: no cause is claimed then, or
-/// what is claimed may stand in for it, unless it is `timed` and no run can show it of another. A free parameter that ends so
+/// what is claimed may stand in for it, unless it is `timed` and no run can show it of another: then the runs that were fitted
+/// have to be near the noise. A free parameter that ends so
 /// many standard deviations (`strain`) from what was known of it stands in for something as well. A fault that may as well be
 /// physics leaves open whether anything is missing. What makes the error grow in
 /// runs that it never saw is not certain either, whatever it is.
@@ -157,7 +158,8 @@ pub fn verdict(findings: &[FindingReport], fit: &Fit, timed: bool, strain: f64) 
     };
     let strained = strain > STRAINED_BESIDE && !any(FindingKind::Artefact);
     let claims = any(FindingKind::Physics) || any(FindingKind::Unlisted);
-    let doubtful = claims && (far && !timed || fit.grows()) || strained;
+    let far_fitted = fit.fitted.rmse_after > FAR * fit.fitted.noise;
+    let doubtful = claims && (far && (!timed || far_fitted) || fit.grows()) || strained;
     if first.kind == FindingKind::Unlisted && !first.is_doubtful() && !doubtful {
         Verdict::Unlisted
     } else if first.is_doubtful()
@@ -459,6 +461,9 @@ mod tests {
         assert_eq!(verdict(&[], f64::NAN, false), Verdict::None);
         assert_eq!(verdict(&sure, 40.0, false), Verdict::CannotTell);
         assert_eq!(verdict(&sure, 40.0, true), Verdict::MissingPhysics);
+        let mut unlike = fit(40.0, 0.1);
+        unlike.fitted.rmse_after = 4.0;
+        assert_eq!(super::verdict(&sure, &unlike, true, 0.0), Verdict::CannotTell);
         assert_eq!(verdict(&fault, 40.0, false), Verdict::SensorArtefact);
         let law = [finding(FindingKind::Unlisted, "unlisted", None)];
         assert_eq!(verdict(&law, 3.0, false), Verdict::Unlisted);

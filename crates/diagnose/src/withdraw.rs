@@ -23,8 +23,6 @@ const HELPS: f64 = 0.6;
 const MISSED: f64 = 0.7;
 /// What is hardly beyond chance has to take this share of the error of runs held out.
 const BORNE_OUT: f64 = 0.1;
-/// Without a number that may as well be nought the fitted runs may be so many times worse.
-const MOST_OF_NOTHING: f64 = 2.0;
 
 /// Growth of ln p that the best of all formulas needs: a law of two terms is one of some ten thousand squared, and its constants are
 /// free. ln 10⁸ and a few for each constant.
@@ -307,9 +305,7 @@ fn without_nothing(
             refined.causes.retain(|other| other.accepted.trial.columns != *columns);
             let proof = prove(case, system, &refined, by)?;
             let as_it_is = Proven { found: found.clone(), refined, withheld: own.withheld.clone(), proof };
-            // A single number that may as well be nought is no cause, whatever it takes of the fitted runs.
-            let most = if is_single(cured) { MOST_OF_NOTHING } else { 1.0 + RISES };
-            let able = |one: &Proven| one.proof.fitted.after <= most * best.proof.fitted.after;
+            let able = |one: &Proven| one.proof.fitted.after <= (1.0 + RISES) * best.proof.fitted.after;
             if able(&as_it_is) {
                 lesser = Some(as_it_is);
                 continue 'asked;
@@ -322,11 +318,6 @@ fn without_nothing(
         }
         return Ok(lesser);
     }
-}
-
-/// Whether a cause is one number.
-fn is_single(cured: &Cured) -> bool {
-    cured.cause.form == Form::Parameters && cured.cause.class == Class::Physics && cured.values.len() == 1
 }
 
 /// Whether a cause is one of the world that every run of a path shows.

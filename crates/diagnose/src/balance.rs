@@ -491,7 +491,7 @@ fn usable(kind: Kind, run: &Recorded, said: &Said) -> Vec<bool> {
     let stands_in = |i: usize| run.stands_in.get(i).copied().unwrap_or(false);
     // From one speed to the other is no change of motion.
     let joins = |i: usize| stands_in(i) != stands_in(i.saturating_sub(1));
-    let overruns = overruns(run, said);
+    let overruns = if matches!(kind, Kind::Shaft | Kind::Fuel) { overruns(run, said) } else { Vec::new() };
     (0..trace.len())
         .map(|i| {
             let moving = run.motion.value[i].abs() > SLOWEST_M_S && speed[i].is_finite();

@@ -10,7 +10,8 @@ use headland_calibrate::statistics::median;
 const BURNS: f64 = 0.05;
 
 /// The samples at which the model's engine takes no fuel and that of the vehicle may: the force follows from the motion in a run
-/// whose brakes were not recorded, or the fuel itself says that the engine went on to burn.
+/// whose brakes were not recorded, or the fuel itself says that the engine went on to burn. Then whatever slows the wheels may be
+/// their brakes.
 pub fn overruns(run: &Recorded, said: &Said) -> Vec<bool> {
     let Some(modelled) = &said.fuel_kg_s else { return vec![false; run.measured.trace.len()] };
     let brake = run.measured.trace.get("brake").is_some();
@@ -19,7 +20,7 @@ pub fn overruns(run: &Recorded, said: &Said) -> Vec<bool> {
     let of = |(sample, modelled): (usize, &f64)| {
         let force_n = run.force_n.as_ref().map_or(f64::NAN, |force_n| force_n[sample]);
         let cut = *modelled <= 0.0;
-        cut && force_n.is_nan() && !brake || burns && (cut || force_n < 0.0)
+        cut && !force_n.is_finite() && !brake || burns && (cut || force_n < 0.0)
     };
     modelled.iter().enumerate().map(of).collect()
 }

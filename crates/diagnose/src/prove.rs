@@ -24,8 +24,6 @@ pub struct Reconstructed {
     pub unit: &'static str,
     /// One series for each run, sample by sample.
     pub runs: Vec<Vec<f64>>,
-    /// The force on the vehicle, forward, where it was found by the power that it takes [N].
-    pub forces_n: Option<Vec<Vec<f64>>>,
 }
 
 /// Errors of one signal over some runs.
@@ -247,13 +245,21 @@ pub fn reconstruct(
     // What shows in the accelerometer is a force to the vehicle as well.
     let kind = if unit == "n" { Kind::Motion } else { kind };
     let runs = along(case, cured, refined, kind)?;
-    let acts = |runs: &Vec<Vec<f64>>| runs.iter().flatten().any(|force_n| *force_n != 0.0);
-    let forces_n = if unit == "w" && cured.events.is_empty() {
-        Some(along(case, cured, refined, Kind::Motion)?).filter(acts)
-    } else {
-        None
-    };
-    Ok(Reconstructed { id, unit, runs, forces_n })
+    Ok(Reconstructed { id, unit, runs })
+}
+
+/// The force on the vehicle of an effect that was found by the power that it takes, forward [N]; none where it is no force.
+pub fn forces_n(
+    case: &Case,
+    cured: &Cured,
+    refined: &Refined,
+) -> Result<Option<Vec<Vec<f64>>>, DiagnoseError> {
+    if !cured.events.is_empty() {
+        return Ok(None);
+    }
+    let runs = along(case, cured, refined, Kind::Motion)?;
+    let acts = runs.iter().flatten().any(|force_n| *force_n != 0.0);
+    Ok(acts.then_some(runs))
 }
 
 /// What an effect does to a balance along every run, sample by sample: forces forward, as in every trace, so that what
@@ -333,7 +339,7 @@ fn sensor_error(case: &Case, id: &'static str, value: f64) -> Result<Reconstruct
             _ => vec![f64::NAN; raw.measured.trace.len()],
         }
     });
-    Ok(Reconstructed { id, unit, runs: runs.collect(), forces_n: None })
+    Ok(Reconstructed { id, unit, runs: runs.collect() })
 }
 
 /// Longest window in which a long run is driven forward [s].

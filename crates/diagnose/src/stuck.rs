@@ -143,10 +143,14 @@ fn renews(values: &[f64]) -> bool {
 
 /// Stretches, first and last sample, in which a channel stays the same for too long while the vehicle is `moving`: what it does
 /// while the vehicle stands still may well stay as it is. One with a noise of its own never does.
-fn stuck_while(moving: &[bool], time_s: &[f64], values: &[f64], own_noise: bool) -> Vec<(usize, usize)> {
-    let equal = still(values);
-    let enough = if own_noise { 0.0 } else { HELD * usual_length(&equal, values.len()) };
-    let leaps = leaping(values);
+fn stuck_while(
+    moving: &[bool],
+    time_s: &[f64],
+    (values, equal): (&[f64], &[(usize, usize)]),
+    own_noise: bool,
+    leaps: impl Fn(usize, usize) -> bool,
+) -> Vec<(usize, usize)> {
+    let enough = if own_noise { 0.0 } else { HELD * usual_length(equal, values.len()) };
     let long = |(from, to): &(usize, usize)| {
         let (samples, long_s) = if leaps(*from, *to) {
             (STUCK_SAMPLES_BEFORE_A_LEAP, STUCK_BEFORE_A_LEAP_S)
@@ -170,11 +174,12 @@ pub fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Optio
         let trace: &Trace = &drive.measured.trace;
         let Some(values) = own(drive, name) else { continue };
         let time_s = trace.time_s();
-        let own_noise = noisy(values, &still(values));
+        let equal = still(values);
+        let own_noise = noisy(values, &equal);
         noisy_everywhere &= own_noise || renews(values);
         let leaps = leaping(values);
         let moving: Vec<bool> = drive.motion.value.iter().map(|speed_m_s| *speed_m_s > SLOWEST_M_S).collect();
-        let long = stuck_while(&moving, time_s, values, own_noise);
+        let long = stuck_while(&moving, time_s, (values, &equal), own_noise, &leaps);
         if long.is_empty() {
             continue;
         }
@@ -229,7 +234,7 @@ mod tests {
         let values = stuck_at(100, 0.01);
         let stuck = |stops: std::ops::Range<usize>| {
             let moving: Vec<bool> = (0..400).map(|index| !stops.contains(&index)).collect();
-            stuck_while(&moving, &time_s, &values, true)
+            stuck_while(&moving, &time_s, (&values, &still(&values)), true, leaping(&values))
         };
         assert_eq!(stuck(0..0), [(100, 129)]);
         assert_eq!(stuck(105..115), [(100, 129)]);

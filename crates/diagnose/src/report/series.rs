@@ -3,18 +3,28 @@
 use super::LeftOver;
 use super::bands::Banded;
 use super::finding::late;
-use crate::prove::Proof;
-use crate::refine::Refined;
+use crate::prove::{Proof, Reconstructed, forces_n};
+use crate::refine::{Cured, Refined};
 use crate::search::Found;
 use crate::{Case, DiagnoseError, System};
 use headland_trace::{Origin, Run, Trace};
 
-/// Every effect along every run, with its 95 % band where one is known, in every row of the logs.
-pub fn effects(case: &Case, proof: &Proof, bands: &[Option<Banded>]) -> Result<Vec<Run>, DiagnoseError> {
+/// Every effect along every run, with its 95 % band where one is known, in every row of the logs; one that a power showed is told
+/// as the force that it is as well.
+pub fn effects(
+    case: &Case,
+    (proof, refined): (&Proof, &Refined),
+    bands: &[Option<Banded>],
+) -> Result<Vec<Run>, DiagnoseError> {
+    let force = |(cured, effect): (&Cured, &Reconstructed)| match effect.unit {
+        "w" => forces_n(case, &cured.along(), refined),
+        _ => Ok(None),
+    };
+    let forces = refined.causes.iter().zip(&proof.effects).map(force).collect::<Result<Vec<_>, _>>()?;
     let mut runs = Vec::new();
     for (index, drive) in case.runs.iter().enumerate() {
         let mut trace = Trace::new(drive.measured.trace.time_s().to_vec())?;
-        for (effect, band) in proof.effects.iter().zip(bands) {
+        for ((effect, forces_n), band) in proof.effects.iter().zip(&forces).zip(bands) {
             let name = format!("{}_{}", effect.id, effect.unit);
             if trace.get(&name).is_some() {
                 continue;
@@ -29,7 +39,7 @@ pub fn effects(case: &Case, proof: &Proof, bands: &[Option<Banded>]) -> Result<V
                 trace.push(format!("{name}_high"), side(1.0), Origin::Predicted)?;
             }
             let force = format!("{}_n", effect.id);
-            if let (Some(forces_n), None) = (&effect.forces_n, trace.get(&force)) {
+            if let (Some(forces_n), None) = (forces_n, trace.get(&force)) {
                 trace.push(force, forces_n[index].clone(), Origin::Predicted)?;
             }
         }

@@ -287,7 +287,17 @@ impl<'a> Case<'a> {
     /// The rows of every balance, of samples that are `usable`.
     pub fn system(&self, usable: &[Vec<bool>]) -> System {
         let block_s = |kind| block_s(kind, &self.runs, self.rows);
-        System::new(&self.kinds, &self.runs, &self.nominal, &block_s, usable, &self.fit)
+        let mut system = System::new(&self.kinds, &self.runs, &self.nominal, &block_s, usable, &self.fit);
+        if self.so_far.is_some() {
+            let of = |kind| {
+                self.together_so_far(kind).cloned().unwrap_or_else(|| vec![Vec::new(); self.runs.len()])
+            };
+            let together = system.column(of);
+            for (left, own) in system.residual.iter_mut().zip(&together) {
+                *left += own;
+            }
+        }
+        system
     }
 
     /// Names of the channels of all runs.

@@ -7,7 +7,7 @@ use crate::gram::Column;
 use crate::noise::Noises;
 use crate::profile::Function;
 use crate::rivals::twin;
-use crate::search::{Accepted, Found, Round};
+use crate::search::{Accepted, Found, MOST_CAUSES, Round};
 use crate::slowed::joined;
 use crate::state::{Part, Stand, State};
 
@@ -33,7 +33,11 @@ impl State<'_> {
     /// those that the runs do not teach each other.
     pub fn conclude(&self, best: Stand, first: Stand, before: Before, needed: f64) -> Option<Found> {
         let (tried, mut unproven) = before;
+        let before = unproven.len();
         let mut best = self.needed(best, &mut unproven, needed)?;
+        if unproven.len() > before {
+            best = self.instead(best, &mut unproven, needed)?;
+        }
         let mut sides = self.sides(&best);
         for _ in 0..EXCHANGES {
             let Some(other) = self.exchanged(&best, &sides, &unproven) else { break };
@@ -50,6 +54,33 @@ impl State<'_> {
         let (best, more) = self.without_unproven(best)?;
         unproven.extend(more);
         self.without_impossible(best, unproven)
+    }
+
+    /// The set with what holds in the place of causes that are `unproven`: what they imitate may be another cause, of which one
+    /// run tells the others.
+    fn instead(&self, mut best: Stand, unproven: &mut Vec<usize>, needed: f64) -> Option<Stand> {
+        for _ in 0..EXCHANGES {
+            if best.parts.len() >= MOST_CAUSES {
+                break;
+            }
+            let banned: Vec<&str> = unproven.iter().map(|number| self.case.causes[*number].id).collect();
+            let reduced = self.reduced(&best.noises, &best.parts)?;
+            let able = |stand: &Stand| {
+                let law = stand.parts.last().is_some_and(|part| self.cause(&part.trial).law.is_some());
+                !law && stand.score - best.score >= needed && self.sensible(stand)
+            };
+            let mut contests = self.contest(&best, &reduced, &banned).into_iter();
+            let Some(one) = contests.find(|one| able(&one.stand)) else { break };
+            let known = unproven.len();
+            let other = self.needed(one.stand, unproven, needed)?;
+            let holds = other.parts.len() > best.parts.len();
+            if holds {
+                best = other;
+            } else if unproven.len() == known {
+                break;
+            }
+        }
+        Some(best)
     }
 
     /// The set without causes that had to be what they cannot be once others were gone; those are told as `unproven`.
@@ -161,6 +192,12 @@ impl State<'_> {
     ) -> Found {
         let gain = |side: &Side| side.lesser.as_ref().map_or(needed, |lesser| best.score - lesser.score);
         sides.sort_by(|one, other| gain(other).total_cmp(&gain(one)));
+        // What the runs do not teach each other stands for nothing that they do.
+        let banned: Vec<&str> = unproven.iter().map(|number| self.case.causes[*number].id).collect();
+        let new = |one: &Contest| one.stand.parts.last().map(|part| self.cause(&part.trial));
+        for side in &mut sides {
+            side.contests.retain(|one| new(one).is_some_and(|cause| !cause.is_banned(&banned)));
+        }
         let mut accepted = Vec::new();
         let mut effects = Vec::new();
         let held = self.held(&best);

@@ -15,6 +15,7 @@ mod band;
 mod begun;
 mod bend;
 mod brakes;
+mod built;
 mod case;
 mod catalogue;
 mod change_points;

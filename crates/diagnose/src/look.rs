@@ -1,13 +1,14 @@
 //! A look at the runs: their rows, the regressors and what they tell; and looks after it, from what was found before.
 
 use crate::balance::{Kind, Rows, System};
+use crate::built::Early;
 use crate::case::Correction;
 use crate::catalogue::Form;
 use crate::contest::Contest;
 use crate::search::{Accepted, Found, LEAST_GAIN, MOST_CAUSES, PER_CAUSE, search, search_without, worth};
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Trial, add_trial, pool};
-use crate::{Case, DiagnoseError, bend, sensors, sharpen, straying};
+use crate::{Case, DiagnoseError, bend, built, sensors, sharpen, straying};
 use std::collections::BTreeSet;
 
 /// A search from nothing takes long with more rows than this; what was found before is then where the next one starts.
@@ -20,14 +21,19 @@ pub struct Look {
     pub found: Found,
     /// The samples that were looked at.
     usable: Vec<Vec<bool>>,
+    /// What was as good before anything was built on.
+    early: Vec<Early>,
 }
+
+/// What was found is known well enough for regressors after so many times.
+pub const BUILDS: usize = 2;
 
 impl Look {
     /// Looks at samples that are `usable`.
     pub fn at(case: &Case, usable: &[Vec<bool>]) -> Result<Self, DiagnoseError> {
         let (system, pool) = prepared(case, usable)?;
         let found = searched(case, &system, &pool)?;
-        Ok(Self { system, pool, found, usable: usable.to_vec() })
+        Ok(Self { system, pool, found, usable: usable.to_vec(), early: Vec::new() })
     }
 
     /// Looks once more, after the recordings were corrected or others of their samples are usable.
@@ -52,13 +58,14 @@ impl Look {
     pub fn sensors_first(&mut self, case: &mut Case) -> Result<(), DiagnoseError> {
         /// A fault that is not linear takes some rounds.
         const ROUNDS: usize = 6;
-        /// What was found is then known well enough for regressors.
-        const BUILDS: usize = 2;
         let many = self.system.row_count() > MANY_ROWS;
         let mut rests = Rests::default();
         let mut found: BTreeSet<usize> = BTreeSet::new();
         for round in 0..ROUNDS {
             found.extend(self.found.accepted.iter().map(|accepted| accepted.trial.cause));
+            if !case.has_built() {
+                self.early = built::as_good(case, self);
+            }
             let built = round < BUILDS && case.build_on(&self.pool, &self.found)?;
             let corrected = self.correct(case, &mut rests)?;
             if !built && !corrected {
@@ -181,6 +188,13 @@ impl Look {
 
     /// What was found, on as many rows as there are, each of which may stray.
     pub fn closer(self, case: &mut Case) -> Result<(System, Pool, Found), DiagnoseError> {
+        let early = (self.early.clone(), self.usable.clone());
+        let (system, pool, mut found) = self.on_all_rows(case)?;
+        built::name(case, (&early.0, &early.1), (&system, &pool), &mut found)?;
+        Ok((system, pool, found))
+    }
+
+    fn on_all_rows(self, case: &mut Case) -> Result<(System, Pool, Found), DiagnoseError> {
         case.step("strange rows")?;
         case.rows = Rows::Many;
         let system = case.system(&self.usable);
@@ -219,7 +233,7 @@ impl Rests {
     }
 }
 
-fn prepared(case: &Case, usable: &[Vec<bool>]) -> Result<(System, Pool), DiagnoseError> {
+pub fn prepared(case: &Case, usable: &[Vec<bool>]) -> Result<(System, Pool), DiagnoseError> {
     let system = case.system(usable);
     if system.kinds.is_empty() {
         return Err(DiagnoseError::NoBalance { channels: case.channels() });
@@ -260,7 +274,12 @@ fn searched(case: &Case, system: &System, pool: &Pool) -> Result<Found, Diagnose
 }
 
 /// The same causes by the columns of another pool, but for what was corrected meanwhile.
-fn again(case: &Case, system: &System, pool: &mut Pool, parts: &[Part]) -> Result<Vec<Part>, DiagnoseError> {
+pub fn again(
+    case: &Case,
+    system: &System,
+    pool: &mut Pool,
+    parts: &[Part],
+) -> Result<Vec<Part>, DiagnoseError> {
     let mut all = Vec::new();
     for part in parts {
         let wanted = &part.trial;
@@ -283,7 +302,7 @@ fn again(case: &Case, system: &System, pool: &mut Pool, parts: &[Part]) -> Resul
 }
 
 /// The free parameters alone, and with causes.
-fn from(state: &State, parts: &[Part]) -> Option<(Stand, Stand)> {
+pub fn from(state: &State, parts: &[Part]) -> Option<(Stand, Stand)> {
     let (system, fit) = (state.system, state.fit);
     let first = state.settle(&[], &system.noises(&system.residual, fit))?;
     let loud = state.settle(parts, &first.noises);

@@ -442,7 +442,6 @@ fn rows(
         }
         if count == 0 { f64::NAN } else { unit * (sum / count as f64).sqrt() }
     };
-    Ok((0..case.runs.len())
-        .map(|run| Errors { before: of(run, &system.residual), after: of(run, &after) })
-        .collect())
+    let before = system.residual_of(&case.runs, &case.nominal);
+    Ok((0..case.runs.len()).map(|run| Errors { before: of(run, &before), after: of(run, &after) }).collect())
 }

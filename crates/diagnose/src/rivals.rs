@@ -12,7 +12,7 @@ use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
 const UNLIKE: f64 = 0.02;
 
 /// Where something is as good as a cause anyway, what comes close to it is named as well: odds of one to a hundred and fifty.
-const TOLERANCE_IN_DOUBT: f64 = 5.0;
+pub const TOLERANCE_IN_DOUBT: f64 = 5.0;
 
 /// A map of the ground that is the same everywhere.
 const LEVEL: &str = "rolling_resistance";

@@ -4,6 +4,7 @@
 //! A map of a path that one run drove alone tells how that run accelerates, and no more: a mass that pushed on its slopes would
 //! take its whole shape up again at the cost of one number.
 
+use crate::balance::{Kind, change};
 use crate::catalogue::{Class, Form};
 use crate::prove::text;
 use crate::recorded::{Recorded, share_paths};
@@ -33,6 +34,9 @@ pub struct SoFar {
     values: Vec<f64>,
     said: Vec<Said>,
     accelerations_m_s2: Vec<Vec<f64>>,
+    /// What they do together beyond the sum of what each does beside the others, by balance and run: extra mass pushes on a
+    /// slope that was found once, and each of the two has all of that in its regressor.
+    together: Vec<(Kind, Vec<Vec<f64>>)>,
 }
 
 /// An effect in many models at once.
@@ -93,6 +97,27 @@ impl Case<'_> {
         Ok(())
     }
 
+    /// Whether regressors are made beside what was found.
+    pub fn has_built(&self) -> bool {
+        self.so_far.is_some()
+    }
+
+    /// Takes what was found out of the model for a while.
+    pub fn set_aside(&mut self) -> Result<Option<SoFar>, DiagnoseError> {
+        let kept = self.so_far.take();
+        self.suppose()?;
+        Ok(kept)
+    }
+
+    /// Takes up again what was set aside.
+    pub fn take_back(&mut self, kept: Option<SoFar>) -> Result<(), DiagnoseError> {
+        self.forget()?;
+        if let Some(kept) = kept {
+            self.take_up(kept);
+        }
+        Ok(())
+    }
+
     /// Takes what was found out of the model again.
     pub fn forget(&mut self) -> Result<(), DiagnoseError> {
         if self.so_far.take().is_some() { self.suppose() } else { Ok(()) }
@@ -118,7 +143,53 @@ impl Case<'_> {
             run.accelerated_m_s2(&said.resistance_n, &said.effective_mass_kg)
         };
         let accelerations_m_s2 = self.runs.iter().zip(&told).map(accelerated).collect();
-        Ok(SoFar { effects, values, said, accelerations_m_s2 })
+        let together = self.together(&effects[1], &said)?;
+        Ok(SoFar { effects, values, said, accelerations_m_s2, together })
+    }
+
+    /// What effects do together, as a model with all of them says it, beyond the sum of what each does beside the others.
+    fn together(
+        &self,
+        effects: &Effects,
+        said_with_all: &[Said],
+    ) -> Result<Vec<(Kind, Vec<Vec<f64>>)>, DiagnoseError> {
+        let most = effects.iter().map(Vec::len).max().unwrap_or(0);
+        if most < 2 {
+            return Ok(Vec::new());
+        }
+        let without = |place: usize| {
+            said(&self.runs, &self.kinds, |run| {
+                let model = self.study.model_of(
+                    self.study.scenario(),
+                    &self.runs[run].measured,
+                    &self.study.priors(),
+                )?;
+                let others = effects[run].iter().enumerate().filter(|(own, _)| *own != place);
+                Ok(beside(model, &others.map(|(_, effect)| Arc::clone(effect)).collect::<Vec<_>>()))
+            })
+        };
+        let lesser = (0..most).map(without).collect::<Result<Vec<_>, _>>()?;
+        let of = |kind: Kind| {
+            let of_run = |(number, run): (usize, &Recorded)| {
+                let by = |before: &Said| change(kind, run, before, &said_with_all[number]);
+                let mut all = by(&self.nominal[number]);
+                for lesser in &lesser {
+                    for (all, own) in all.iter_mut().zip(by(&lesser[number])) {
+                        *all -= own;
+                    }
+                }
+                all
+            };
+            (kind, self.runs.iter().enumerate().map(of_run).collect())
+        };
+        Ok(self.kinds.iter().copied().map(of).collect())
+    }
+
+    /// What was found so far does together beyond the sum of its regressors, sample by sample, run by run; nothing where it is
+    /// their sum.
+    pub fn together_so_far(&self, kind: Kind) -> Option<&Vec<Vec<f64>>> {
+        let so_far = self.so_far.as_ref()?;
+        so_far.together.iter().find(|(own, _)| *own == kind).map(|(_, runs)| runs)
     }
 
     /// What the model says of every run with what was found so far.

@@ -47,30 +47,48 @@ impl State<'_> {
 
     /// The rows at places where no other fitted run was, by chunk: a map that is made without a run says nothing of them.
     fn unseen(&self, parts: &[Part]) -> Vec<Vec<usize>> {
+        let mapped = self.mapped(parts);
+        let runs = &self.case.runs;
+        let of_chunk = |chunk: &Chunk| {
+            let Some(mapped) = mapped.as_ref().filter(|_| self.fit[chunk.run]) else { return Vec::new() };
+            let at_m = |row: &Row| row.mean(&runs[chunk.run].position_m);
+            let rows = chunk.rows.iter().enumerate();
+            rows.filter(|(_, row)| !self.is_known(mapped, chunk.run, at_m(row)))
+                .map(|(number, _)| number)
+                .collect()
+        };
+        self.system.chunks.par_iter().map(of_chunk).collect()
+    }
+
+    /// The share of a run along which other, fitted runs tell what the maps of a set are.
+    pub fn share_known(&self, parts: &[Part], run: usize) -> f64 {
+        let Some(mapped) = self.mapped(parts) else { return 1.0 };
+        let places = &self.case.runs[run].position_m;
+        let known = places.iter().filter(|at_m| self.is_known(&mapped, run, **at_m)).count();
+        known as f64 / places.len().max(1) as f64
+    }
+
+    /// Where the maps of a set are known; none where it has no map.
+    fn mapped(&self, parts: &[Part]) -> Option<Mapped> {
         /// So far from where it is known a map still is, in lengths over which it stays alike.
         const NEAR: f64 = 0.5;
         let of_place = |part: &&Part| self.cause(&part.trial).form == Form::OverPosition;
         let lengths = parts.iter().filter(of_place).filter_map(|part| Some(part.spread.as_ref()?.length));
         let near_m = NEAR * lengths.fold(f64::INFINITY, f64::min);
-        let runs = &self.case.runs;
-        let places: Vec<Vec<f64>> = runs.iter().map(|run| sorted(&run.position_m)).collect();
-        let seen = |own: usize, at_m: f64| {
-            (0..runs.len())
-                .filter(|run| *run != own && self.fit[*run] && runs[*run].path == runs[own].path)
-                .any(|run| {
-                    let next = places[run].partition_point(|place| *place < at_m - near_m);
-                    places[run].get(next).is_some_and(|place| *place <= at_m + near_m)
-                })
-        };
-        let of_chunk = |chunk: &Chunk| {
-            if near_m.is_infinite() || !self.fit[chunk.run] {
-                return Vec::new();
-            }
-            let at_m = |row: &Row| row.mean(&runs[chunk.run].position_m);
-            let rows = chunk.rows.iter().enumerate();
-            rows.filter(|(_, row)| !seen(chunk.run, at_m(row))).map(|(number, _)| number).collect()
-        };
-        self.system.chunks.par_iter().map(of_chunk).collect()
+        let places = || self.case.runs.iter().map(|run| sorted(&run.position_m)).collect();
+        near_m.is_finite().then(|| Mapped { near_m, places: places() })
+    }
+
+    /// Whether other, fitted runs tell what maps are where a run is.
+    fn is_known(&self, mapped: &Mapped, own: usize, at_m: f64) -> bool {
+        let (runs, near_m) = (&self.case.runs, mapped.near_m);
+        (0..runs.len()).filter(|run| *run != own && self.fit[*run] && runs[*run].path == runs[own].path).any(
+            |run| {
+                let places = &mapped.places[run];
+                let next = places.partition_point(|place| *place < at_m - near_m);
+                places.get(next).is_some_and(|place| *place <= at_m + near_m)
+            },
+        )
     }
 
     /// The fitted runs whose path no other fitted run drove, where a set holds a function of the path.
@@ -156,6 +174,14 @@ impl State<'_> {
         };
         fitted.par_iter().map(of_run).collect()
     }
+}
+
+/// Where maps are known.
+struct Mapped {
+    /// So near to where a run was [m].
+    near_m: f64,
+    /// The places of every run, sorted [m].
+    places: Vec<Vec<f64>>,
 }
 
 /// A run as the others predict it.

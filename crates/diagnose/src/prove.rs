@@ -35,6 +35,20 @@ pub struct Errors {
     pub after: f64,
 }
 
+impl Errors {
+    /// Over the runs that are `chosen`; none where there are none.
+    pub fn over(each: &[Self], chosen: &[bool]) -> Option<Self> {
+        let own = || each.iter().zip(chosen).filter(|(_, chosen)| **chosen).map(|(errors, _)| errors);
+        let root = |of: fn(&Self) -> f64| {
+            let squares: Vec<f64> =
+                own().map(|one| of(one).powi(2)).filter(|value| value.is_finite()).collect();
+            (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+        };
+        own().next()?;
+        Some(Self { before: root(|one| one.before), after: root(|one| one.after) })
+    }
+}
+
 /// The proof.
 pub struct Proof {
     /// The signal.
@@ -43,6 +57,8 @@ pub struct Proof {
     pub fitted: Errors,
     /// Over the runs that were not; none where there are none.
     pub held_out: Option<Errors>,
+    /// Run by run.
+    pub each: Vec<Errors>,
     /// What the sensor of the signal explains.
     pub noise: f64,
     /// The effects along the runs.
@@ -87,19 +103,8 @@ pub fn prove(
         None => (rows(case, system, &runs, refined, &told, kind)?, f64::NAN),
     };
     let over = |wanted: bool| {
-        let chosen: Vec<&Errors> = errors
-            .iter()
-            .zip(&case.fit)
-            .zip(&case.bears)
-            .filter(|((_, fit), bears)| **fit == wanted && **bears)
-            .map(|((errors, _), _)| errors)
-            .collect();
-        let root = |of: fn(&Errors) -> f64| {
-            let squares: Vec<f64> =
-                chosen.iter().map(|one| of(one).powi(2)).filter(|value| value.is_finite()).collect();
-            (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
-        };
-        (!chosen.is_empty()).then(|| Errors { before: root(|one| one.before), after: root(|one| one.after) })
+        let chosen = case.fit.iter().zip(&case.bears).map(|(fit, bears)| *fit == wanted && *bears);
+        Errors::over(&errors, &chosen.collect::<Vec<_>>())
     };
     let mut paths: Vec<usize> = Vec::new();
     let mut scenarios = Vec::new();
@@ -116,6 +121,7 @@ pub fn prove(
         signal: kind.signal(),
         fitted: over(true).unwrap_or_default(),
         held_out: over(false),
+        each: errors,
         noise,
         effects,
         scenarios,

@@ -3,6 +3,7 @@
 use crate::balance::Kind;
 use crate::catalogue::{Cause, Form};
 use crate::conclude::Side;
+use crate::gram::Column;
 use crate::search::{Accepted, Beside, Found, OTHER_WORDS, Rival, TOLERANCE, worth};
 use crate::state::{Stand, State};
 use crate::trial::Trial;
@@ -137,9 +138,19 @@ impl State<'_> {
                 if found.accepted.iter().any(named) || replaced.is_empty() {
                     continue;
                 }
+                let effect = other.effect(self, part);
                 let like = |place: &usize| {
-                    let columns = &found.accepted[*place].trial.columns;
-                    reduced.squared_correlation(columns, &part.trial.columns, &nuisance, &self.sd())
+                    let own = &found.accepted[*place];
+                    // What a function is everywhere says nothing of its course.
+                    if own.function.is_some() || part.spread.is_some() {
+                        return self.alike(&found.effects[*place], &effect, found);
+                    }
+                    reduced.squared_correlation(
+                        &own.trial.columns,
+                        &part.trial.columns,
+                        &nuisance,
+                        &self.sd(),
+                    )
                 };
                 let likest = replaced.into_iter().map(|place| (place, like(&place)));
                 // What is like none of them explains something else, and a formula that is one of them says it in other words,
@@ -161,6 +172,19 @@ impl State<'_> {
                 }
             }
         }
+    }
+
+    /// Squared correlation of what two causes do to the rows of the fitted runs, each row by the noise of its balance.
+    fn alike(&self, one: &Column, other: &Column, found: &Found) -> f64 {
+        let size = |rows: &Column| -> f64 {
+            let squares = self.system.mean_squares(rows, self.fit);
+            let noises = &found.stand.noises.each;
+            squares.iter().zip(noises).map(|(square, noise)| square / noise.sd().powi(2)).sum()
+        };
+        let sum: Column = one.iter().zip(other).map(|(one, other)| one + other).collect();
+        let (own, their) = (size(one), size(other));
+        let product = 0.5 * (size(&sum) - own - their);
+        if own * their > 0.0 { product * product / (own * their) } else { 0.0 }
     }
 
     /// A function over position that these recordings give to slopes and to soft ground alike: where it rises in places

@@ -90,9 +90,29 @@ impl Proven {
 
     /// Error on runs held out over that of the nominal scenario, where there are any.
     fn worsened(&self) -> Option<f64> {
-        let errors = self.proof.held_out?;
-        Some(errors.after / errors.before).filter(|ratio| ratio.is_finite())
+        self.proof.held_out.and_then(|errors| ratio(&errors))
     }
+
+    /// The same over some runs alone.
+    fn worsened_in(&self, telling: &[bool]) -> Option<f64> {
+        Errors::over(&self.proof.each, telling).and_then(|errors| ratio(&errors))
+    }
+
+    /// The runs held out that tell whether it is right: a map says nothing of places where no fitted run was.
+    fn telling(&self, case: &Case, system: &System, pool: &Pool) -> Vec<bool> {
+        /// A run along which maps are known for less than this share tells nothing of them.
+        const KNOWN: f64 = 0.6;
+        let state = State { case, system, pool, fit: &case.fit };
+        let parts: Vec<Part> =
+            self.found.stand.parts.iter().filter(|part| part.spread.is_some()).cloned().collect();
+        let own = case.fit.iter().zip(&case.bears).map(|(fit, bears)| !fit && *bears).enumerate();
+        own.map(|(run, held_out)| held_out && state.share_known(&parts, run) > KNOWN).collect()
+    }
+}
+
+/// Error with what was found over that of the nominal scenario.
+fn ratio(errors: &Errors) -> Option<f64> {
+    Some(errors.after / errors.before).filter(|ratio| ratio.is_finite())
 }
 
 /// Values and proof of what was found; causes with which runs held out are worse than with the nominal scenario are taken
@@ -110,12 +130,14 @@ pub fn proven(
     let mut withdrawn = false;
     let fitted = best.proof.fitted;
     let by = Some(told_by(system, &best.refined));
-    while let Some(worsened) = best.worsened().filter(|ratio| *ratio > 1.0 + RISES) {
+    let telling = best.telling(case, system, pool);
+    while let Some(worsened) = best.worsened_in(&telling).filter(|ratio| *ratio > 1.0 + RISES) {
         let mut least: Option<(f64, Proven)> = None;
         for place in 0..best.found.stand.parts.len() {
             let Some(found) = without(case, system, pool, &best.found, place) else { continue };
             let lesser = Proven::of(case, system, pool, found, events, by)?;
-            if let Some(ratio) = lesser.worsened().filter(|ratio| *ratio < (1.0 + RISES) * worsened)
+            if let Some(ratio) =
+                lesser.worsened_in(&telling).filter(|ratio| *ratio < (1.0 + RISES) * worsened)
                 && least.as_ref().is_none_or(|(other, _)| ratio < *other)
             {
                 least = Some((ratio, lesser));
@@ -219,7 +241,10 @@ fn without_idle(
         return Ok(None);
     };
     let lesser = Proven::of(case, system, pool, found, events, by)?;
-    let held_out = |one: &Proven| prove(case, system, &one.refined, Some(kind)).map(|proof| proof.held_out);
+    let telling = best.telling(case, system, pool);
+    let held_out = |one: &Proven| {
+        prove(case, system, &one.refined, Some(kind)).map(|proof| Errors::over(&proof.each, &telling))
+    };
     let (with, without) = (held_out(best)?, held_out(&lesser)?);
     let faint = is_faint(best, place);
     let idle = with.zip(without).is_some_and(|(with, without)| is_idle(&with, &without, (needed, faint)));

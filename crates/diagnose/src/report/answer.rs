@@ -129,6 +129,7 @@ pub fn inconclusive(
         signal: "speed_m_s",
         fitted: Errors { before: f64::NAN, after: f64::NAN },
         held_out: None,
+        each: Vec::new(),
         noise: f64::NAN,
         effects: Vec::new(),
         scenarios: vec![(0, case.study.scenario().document().text().to_owned())],

@@ -41,6 +41,15 @@ pub struct Cured {
 }
 
 impl Cured {
+    /// Whether every amplitude of it may as well be nought.
+    pub fn may_be_none(&self) -> bool {
+        let amplitudes = self.cause.terms.iter().zip(&self.values).filter(|(term, _)| term.linear);
+        let mut known = amplitudes.map(|(_, (_, ci95))| ci95).peekable();
+        self.cause.form == Form::Parameters
+            && known.peek().is_some()
+            && known.all(|ci95| ci95[0] <= 0.0 && ci95[1] >= 0.0)
+    }
+
     /// Whether single runs tell it of themselves: spells, or what works in one run.
     pub fn in_single_runs(&self) -> bool {
         !self.events.is_empty() || self.cause.run.is_some()

@@ -310,7 +310,7 @@ fn without_nothing(
         let windy = own.refined.causes.iter().any(|cured| is_whole(&cured.cause));
         let of_motion = |cured: &Cured| system.kinds[cured.accepted.balance] == Kind::Motion;
         let doubtful = |cured: &&Cured| {
-            is_nothing(cured) || windy && of_motion(cured) && !is_whole(&cured.cause) && is_claim(cured)
+            cured.may_be_none() || windy && of_motion(cured) && !is_whole(&cured.cause) && is_claim(cured)
         };
         let mut idle: Vec<&Cured> = own.refined.causes.iter().filter(doubtful).collect();
         idle.sort_by(|one, other| one.accepted.gain.total_cmp(&other.accepted.gain));
@@ -350,15 +350,6 @@ fn is_claim(cured: &Cured) -> bool {
     matches!(cured.cause.form, Form::Parameters | Form::OverPosition)
         && cured.cause.class != Class::Artefact
         && cured.events.is_empty()
-}
-
-/// Whether every amplitude of a cause may as well be nought.
-fn is_nothing(cured: &Cured) -> bool {
-    let amplitudes = cured.cause.terms.iter().zip(&cured.values).filter(|(term, _)| term.linear);
-    let mut known = amplitudes.map(|(_, (_, ci95))| ci95).peekable();
-    cured.cause.form == Form::Parameters
-        && known.peek().is_some()
-        && known.all(|ci95| ci95[0] <= 0.0 && ci95[1] >= 0.0)
 }
 
 /// What is said where what was found does harm.

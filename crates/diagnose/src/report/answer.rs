@@ -1,10 +1,10 @@
 //! Puts the answer together.
 
-use super::finding::{faulty, findings, verdict};
+use super::finding::{Doubts, faulty, findings, verdict};
 use super::series::{corrections, effects, residuals};
 use super::shown::shown;
 use super::{Calibrated, Diagnosed, Diagnosis, Fit, FitRuns, Tried, Verdict, bands};
-use crate::catalogue::Form;
+use crate::catalogue::{Class, Form};
 use crate::elsewhere::elsewhere;
 use crate::events::Event;
 use crate::experiment::Proposals;
@@ -46,10 +46,13 @@ pub fn report(
     }
     let fit = fit(case, system, Some(found), proof);
     let strain = strain(case, refined);
+    let own = |cured: &Cured| cured.cause.class != Class::Artefact && cured.may_be_none();
+    let slight = refined.causes.iter().any(own);
     let verdict = if beside.withheld.is_some() {
         Verdict::CannotTell
     } else {
-        verdict(&findings, &fit, timed(refined), strain.map_or(0.0, |(_, strain)| strain))
+        let strain = strain.map_or(0.0, |(_, strain)| strain);
+        verdict(&findings, &fit, &Doubts { timed: timed(refined), slight, strain })
     };
     notes.extend(remarks(case, &found.unproven));
     let mut null_space = refined.null_space.clone();
@@ -79,6 +82,7 @@ pub fn report(
         balances: &system.kinds,
         before: &before,
         strain,
+        slight,
         withheld: beside.withheld.as_deref(),
         null_space: &refined.null_space,
         own_spells: beside.events.iter().any(|event| !case.fit[event.run]),

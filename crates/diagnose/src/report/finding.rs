@@ -133,14 +133,25 @@ impl FindingReport {
     }
 }
 
+/// What a verdict depends on besides the findings and how well they fit.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Doubts {
+    /// Whether anything that was found is what each run tells of itself alone.
+    pub timed: bool,
+    /// Whether any cause may as well be none.
+    pub slight: bool,
+    /// How far a free parameter ends from what was known of it, in standard deviations.
+    pub strain: f64,
+}
+
 /// What a diagnosis says in a word. Beside what is certain, one cause in doubt leaves open what is missing; it takes nothing
 /// from a sensor's fault. Where far more than noise is left, something is missing all the same: no cause is claimed then, or
 /// what is claimed may stand in for it, unless it is `timed` and no run can show it of another: then the runs that were fitted
 /// have to be near the noise. A free parameter that ends so
 /// many standard deviations (`strain`) from what was known of it stands in for something as well. A fault that may as well be
-/// physics leaves open whether anything is missing. What makes the error grow in
+/// physics leaves open whether anything is missing, and so does a cause that may as well be none (`slight`). What makes the error grow in
 /// runs that it never saw is not certain either, whatever it is.
-pub fn verdict(findings: &[FindingReport], fit: &Fit, timed: bool, strain: f64) -> Verdict {
+pub fn verdict(findings: &[FindingReport], fit: &Fit, doubts: &Doubts) -> Verdict {
     /// An error of so many times the noise is no matter of how well the noise is known.
     const FAR: f64 = 10.0;
     /// Where nothing was found, nothing that was found can be rough: a plant with suspension, tyres and sensors of its own, in which
@@ -150,6 +161,7 @@ pub fn verdict(findings: &[FindingReport], fit: &Fit, timed: bool, strain: f64) 
     const STRAINED: f64 = 3.3;
     /// Beside what was found, which may be mistaken by as much as its own error allows, it has to be further.
     const STRAINED_BESIDE: f64 = 4.0;
+    let Doubts { timed, slight, strain } = *doubts;
     let far = fit.lack_of_fit > FAR;
     let any = |kind: FindingKind| findings.iter().any(|finding| finding.kind == kind);
     let Some(first) = findings.first() else {
@@ -159,7 +171,7 @@ pub fn verdict(findings: &[FindingReport], fit: &Fit, timed: bool, strain: f64) 
     let strained = strain > STRAINED_BESIDE && !any(FindingKind::Artefact);
     let claims = any(FindingKind::Physics) || any(FindingKind::Unlisted);
     let far_fitted = fit.fitted.rmse_after > FAR * fit.fitted.noise;
-    let doubtful = claims && (far && (!timed || far_fitted) || fit.grows()) || strained;
+    let doubtful = claims && (far && (!timed || far_fitted) || fit.grows() || slight) || strained;
     if first.kind == FindingKind::Unlisted && !first.is_doubtful() && !doubtful {
         Verdict::Unlisted
     } else if first.is_doubtful()
@@ -432,7 +444,8 @@ mod tests {
         let sure = || finding(Physics, "wind", None);
         let doubtful = || finding(Physics, "grade", Some("soft_ground"));
         let fault = || finding(Artefact, "accelerometer_bias", Some("accelerometer_tilt"));
-        let verdict = |findings: &[FindingReport]| super::verdict(findings, &fit(3.0, 0.1), false, 1.0);
+        let verdict =
+            |findings: &[FindingReport]| super::verdict(findings, &fit(3.0, 0.1), &Doubts::default());
         assert_eq!(verdict(&[]), Verdict::None);
         assert_eq!(verdict(&[sure()]), Verdict::MissingPhysics);
         assert_eq!(verdict(&[sure(), doubtful()]), Verdict::CannotTell);
@@ -455,7 +468,7 @@ mod tests {
         let sure = [finding(Physics, "wind", None)];
         let fault = [finding(Artefact, "latency", None)];
         let verdict = |findings: &[FindingReport], lack_of_fit: f64, timed: bool| {
-            super::verdict(findings, &fit(lack_of_fit, 0.1), timed, 0.0)
+            super::verdict(findings, &fit(lack_of_fit, 0.1), &Doubts { timed, ..Doubts::default() })
         };
         assert_eq!(verdict(&[], 40.0, false), Verdict::CannotTell);
         assert_eq!(verdict(&[], f64::NAN, false), Verdict::None);
@@ -463,7 +476,10 @@ mod tests {
         assert_eq!(verdict(&sure, 40.0, true), Verdict::MissingPhysics);
         let mut unlike = fit(40.0, 0.1);
         unlike.fitted.rmse_after = 4.0;
-        assert_eq!(super::verdict(&sure, &unlike, true, 0.0), Verdict::CannotTell);
+        assert_eq!(
+            super::verdict(&sure, &unlike, &Doubts { timed: true, ..Doubts::default() }),
+            Verdict::CannotTell
+        );
         assert_eq!(verdict(&fault, 40.0, false), Verdict::SensorArtefact);
         let law = [finding(FindingKind::Unlisted, "unlisted", None)];
         assert_eq!(verdict(&law, 3.0, false), Verdict::Unlisted);
@@ -473,20 +489,36 @@ mod tests {
     #[test]
     fn what_hurts_in_runs_that_it_never_saw_is_no_certainty() {
         use FindingKind::{Artefact, Physics, Unlisted};
-        let verdict =
-            |kind, id, after: f64| super::verdict(&[finding(kind, id, None)], &fit(3.0, after), true, 0.0);
+        let verdict = |kind, id, after: f64| {
+            super::verdict(
+                &[finding(kind, id, None)],
+                &fit(3.0, after),
+                &Doubts { timed: true, ..Doubts::default() },
+            )
+        };
         assert_eq!(verdict(Physics, "auxiliary_power", 1.01), Verdict::MissingPhysics);
         assert_eq!(verdict(Physics, "auxiliary_power", 1.1), Verdict::CannotTell);
         assert_eq!(verdict(Unlisted, "unlisted", 1.1), Verdict::CannotTell);
         assert_eq!(verdict(Artefact, "stuck_channel", 1.1), Verdict::SensorArtefact);
-        assert_eq!(super::verdict(&[], &fit(3.0, 1.1), false, 0.0), Verdict::None);
+        assert_eq!(super::verdict(&[], &fit(3.0, 1.1), &Doubts::default()), Verdict::None);
+    }
+
+    #[test]
+    fn a_cause_that_may_as_well_be_none_is_no_certainty() {
+        let slight = |id: &str, kind| {
+            let doubts = Doubts { slight: true, ..Doubts::default() };
+            super::verdict(&[finding(kind, id, None)], &fit(1.0, 0.1), &doubts)
+        };
+        assert_eq!(slight("driveline_efficiency", FindingKind::Physics), Verdict::CannotTell);
+        assert_eq!(slight("latency", FindingKind::Artefact), Verdict::SensorArtefact);
     }
 
     #[test]
     fn a_parameter_far_from_what_was_known_of_it_stands_in_for_something() {
         use FindingKind::{Artefact, Physics, Unlisted};
-        let verdict =
-            |findings: &[FindingReport], strain: f64| super::verdict(findings, &fit(1.0, 0.1), false, strain);
+        let verdict = |findings: &[FindingReport], strain: f64| {
+            super::verdict(findings, &fit(1.0, 0.1), &Doubts { strain, ..Doubts::default() })
+        };
         assert_eq!(verdict(&[], 2.5), Verdict::None);
         assert_eq!(verdict(&[], 3.5), Verdict::CannotTell);
         assert_eq!(verdict(&[finding(Physics, "wind", None)], 3.5), Verdict::MissingPhysics);

@@ -22,6 +22,8 @@ pub struct Told<'a> {
     pub before: &'a Map,
     /// The free parameter that ends furthest from what was known of it, and by how many standard deviations.
     pub strain: Option<(&'a Free, f64)>,
+    /// Whether any cause may as well be none.
+    pub slight: bool,
     /// Why nothing is claimed, where it is not.
     pub withheld: Option<&'a str>,
     /// What the data cannot separate.
@@ -56,6 +58,9 @@ pub fn answer(told: &Told) -> String {
             } else if told.fit.grows() {
                 "Something is missing, and what explains it in the runs that were fitted does not in those held out, so \
                  that nothing of it is certain."
+            } else if told.slight {
+                "Something may be missing, and within its interval what was found may as well be none, so that nothing of \
+                 it is certain."
             } else {
                 "More is missing than was found, and what was found may stand in for it, so that nothing of it is certain."
             }

@@ -1,6 +1,5 @@
 //! What is diagnosed: a scenario, a recording, and everything that is prepared once.
 
-use crate::DiagnoseError;
 use crate::balance::{Kind, Rows, System, bearing, block_s, kinds};
 use crate::catalogue::{ARTEFACTS, Around, Cause, causes};
 use crate::own::own;
@@ -13,6 +12,7 @@ use crate::split::{split, traits};
 use crate::standin::{Prepared, prepared};
 use crate::unmoved::{UNMOVED, UNTOLD, is_mass, moved};
 use crate::way::Scale;
+use crate::{DiagnoseError, placed};
 use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
 use headland_calibrate::study::Study;
 use headland_plugin::{Contact, Registry, closest};
@@ -130,7 +130,8 @@ impl<'a> Case<'a> {
                 run.how.also.push(Inputs::Curvature);
             }
         }
-        let runs = recorded(&study, &prepared, &model);
+        let mut runs = recorded(&study, &prepared, &model);
+        placed::by_the_clock_of_speed(&mut runs)?;
         study.notes.extend(prepared.notes.iter().cloned());
         let marked: Vec<bool> = recording.runs.iter().map(|run| run.held_out).collect();
         if marked.iter().all(|held| *held) {

@@ -52,6 +52,7 @@ mod mirror;
 mod noise;
 mod overrun;
 mod own;
+mod placed;
 mod places;
 mod profile;
 mod prove;

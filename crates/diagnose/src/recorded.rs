@@ -22,6 +22,8 @@ pub struct Recorded {
     pub acceleration_m_s2: Vec<f64>,
     /// Position along the path [m].
     pub position_m: Vec<f64>,
+    /// Whether its places are told by the clock of its speed.
+    pub placed: bool,
     /// The ground that it drove over: runs of the same number share it.
     pub path: usize,
     /// How many runs drove this path before.
@@ -76,6 +78,7 @@ pub fn recorded(study: &Study, prepared: &Prepared, model: &Model) -> Vec<Record
         all.push(Recorded {
             number: all.len(),
             position_m: position(measured, &motion),
+            placed: false,
             acceleration_m_s2: motion.slope.clone(),
             force_n: force(&measured.trace, model, &motion.value),
             stands_in: stands_in.clone(),

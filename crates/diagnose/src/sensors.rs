@@ -6,7 +6,7 @@ use crate::gram::Column;
 use crate::recorded::Recorded;
 use crate::said::Said;
 use crate::standin::with_stand_in;
-use crate::{Case, DiagnoseError, System};
+use crate::{Case, DiagnoseError, System, placed};
 use headland_trace::{Channel, Trace};
 use headland_units::constants::STANDARD_GRAVITY_M_S2;
 
@@ -233,6 +233,13 @@ fn moved(runs: &[Recorded], id: &str, value: f64, force: bool) -> Result<Vec<Rec
         }
         if force && late_force(run, id, value) {
             follow_force(&mut changed);
+        } else if ["latency", "clock_drift"].contains(&id) {
+            // Places that are told by the clock of the speed are set right with it.
+            let time_s = run.measured.trace.time_s();
+            let at = |index: usize| {
+                if id == "latency" { time_s[index] + value } else { drifted(time_s, index, value) }
+            };
+            placed::go_along(&mut changed, &(0..time_s.len()).map(at).collect::<Vec<f64>>())?;
         }
         if id == "force_scale" {
             for sample in changed.force_n.iter_mut().flatten() {

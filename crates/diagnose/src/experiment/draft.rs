@@ -133,6 +133,7 @@ pub fn drafted(
         stands_in: Vec::new(),
         unknown: Vec::new(),
         leaps: Vec::new(),
+        placed: false,
         engine_w,
         pull_n: None,
         charge_j: base.charge_j,

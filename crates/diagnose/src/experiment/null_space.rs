@@ -74,20 +74,23 @@ fn together(blind: &Blind, candidates: &[Candidate]) -> String {
     let amount = |value: f64, unit: &str| {
         if unit.is_empty() { number(value) } else { format!("{} {unit}", number(value)) }
     };
+    // None is moved by more than it is usually uncertain: a straight line says nothing of a tractor that weighs a thousand tons.
+    let least = |(index, share): &(usize, f64)| candidates[*index].size / (share.abs() * own.size);
+    let step = own.size * blind.imitated_by.iter().map(least).fold(1.0, f64::min);
     let mut names = vec![format!("`{}`", own.name)];
     let mut moves = Vec::new();
     for (index, share) in &blind.imitated_by {
         let other = &candidates[*index];
         let way = if *share > 0.0 { "lowering" } else { "raising" };
         names.push(format!("`{}`", other.name));
-        moves.push(format!("{way} `{}` by {}", other.name, amount(share.abs() * own.size, &other.unit)));
+        moves.push(format!("{way} `{}` by {}", other.name, amount(share.abs() * step, &other.unit)));
     }
     let nothing = if blind.exact { "nothing" } else { "next to nothing" };
     format!(
         "These recordings only know the sum of what {} do: raising `{}` by {} and {} changes {nothing} that was measured.",
         listed(&names),
         own.name,
-        amount(own.size, &own.unit),
+        amount(step, &own.unit),
         listed(&moves)
     )
 }
@@ -120,6 +123,14 @@ mod tests {
             together(&blind, &all),
             "These recordings only know the sum of what `brake_drag.force_n` and `soil.coefficient` do: raising \
              `brake_drag.force_n` by 1000 N and lowering `soil.coefficient` by 0.00784 changes nothing that was measured."
+        );
+        // A coefficient that would have to go by 0.784 goes by the 0.01 that it is uncertain.
+        let far =
+            Blind { candidate: 1, exact: true, imitated_by: vec![(0, 7.84e-4)], deviation: f64::INFINITY };
+        assert!(
+            together(&far, &all).contains("by 12.8 N and lowering `soil.coefficient` by 0.0100"),
+            "{}",
+            together(&far, &all)
         );
     }
 }

@@ -57,10 +57,12 @@ pub fn more_of_the_same(case: &Case, rivals: &[(&'static str, f64)]) -> Option<S
     let told = |(id, now): &(&'static str, f64)| {
         let more = (TELLS * runs / now.max(0.0) - runs).ceil().max(1.0);
         if more > MOST_RUNS {
-            return format!("`{id}` is not told by any number of runs like these (ln p {now:.1} of {runs})");
+            return format!("not even {MOST_RUNS} runs like these would tell it from `{id}`");
         }
         let these = if more > 1.0 { "runs like these" } else { "run like these" };
-        format!("{more} {these} should tell it from `{id}` (ln p {now:.1} of {runs}, and as much of each)")
+        format!(
+            "{more} {these} should tell it from `{id}` (the {runs} at hand give ln p {now:.1} of {TELLS})"
+        )
     };
     Some(listed(&rivals.iter().map(told).collect::<Vec<_>>()))
 }

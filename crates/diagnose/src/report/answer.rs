@@ -58,12 +58,7 @@ pub fn report(
     let mut null_space = refined.null_space.clone();
     for finding in &findings {
         for rival in &finding.indistinguishable_from {
-            null_space.push(format!(
-                "{} and {} explain these recordings equally well (squared correlation {:.2}).",
-                words::capital(&words::plain(&finding.id)),
-                words::plain(&rival.id),
-                rival.squared_correlation
-            ));
+            null_space.push(words::as_likely(&finding.id, rival));
         }
     }
     // Both under the noise at the end: before, whatever is missing would count as noise.

@@ -10,7 +10,7 @@ pub use number::{number, plain};
 use crate::balance::Kind;
 use crate::catalogue::{Cause, Class};
 use crate::refine::Cured;
-use crate::report::ParameterReport;
+use crate::report::{ParameterReport, RivalReport};
 use number::{quantity, with_interval};
 
 /// With a capital at its begin.
@@ -115,8 +115,9 @@ fn values(cured: &Cured, parameters: &[ParameterReport]) -> Values {
     if cured.function().is_some() {
         let [peak, rms, ..] = parameters else { return Values::None };
         return Values::Beside(format!(
-            "{} up to {}, {} in the root mean square",
+            "{} {} to {}, {} in the root mean square",
             label(&peak.name),
+            if peak.value < 0.0 { "down" } else { "up" },
             with_interval(peak.value, peak.ci95, &peak.unit),
             quantity(rms.value, &rms.unit)
         ));
@@ -148,6 +149,24 @@ fn values(cured: &Cured, parameters: &[ParameterReport]) -> Values {
 /// A parameter's name as a person says it.
 fn label(name: &str) -> String {
     headland_units::stem(name).replace('_', " ")
+}
+
+/// That a rival makes the recordings as likely as what was found: by the same course, or by one of its own.
+pub fn as_likely(id: &str, rival: &RivalReport) -> String {
+    /// Below this squared correlation two causes do not imitate each other.
+    const ALIKE: f64 = 0.5;
+    let (one, other) = (capital(&plain(id)), plain(&rival.id));
+    let correlation = rival.squared_correlation;
+    if correlation > ALIKE {
+        format!(
+            "{one} and {other} explain these recordings equally well (squared correlation {correlation:.2})."
+        )
+    } else {
+        format!(
+            "{one} and {other} explain these recordings in ways of their own (squared correlation {correlation:.2}), and neither \
+             much better than the other."
+        )
+    }
 }
 
 /// One sentence for a fault that a channel shows by itself.

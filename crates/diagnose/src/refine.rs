@@ -441,9 +441,16 @@ fn nonlinear(
     }
     let whiteners = found.noises.1.whiteners(&system.chunks);
     // Small faults of sensors and corrections keep their linear estimate: fitted freely they would shrink the noise
-    // along with the signal.
-    let small: Vec<(&Column, f64)> =
+    // along with the signal. So do faults that are accepted, of which no model says anything.
+    let mut small: Vec<(&Column, f64)> =
         (count..pool.nuisance).map(|column| (&pool.columns[column], found.estimate.beta[column])).collect();
+    for accepted in found.accepted.iter().filter(|one| case.causes[one.trial.cause].form == Form::Measured) {
+        let own = accepted.trial.columns.iter().filter_map(|column| {
+            let place = found.used.iter().position(|used| used == column)?;
+            Some((&pool.columns[*column], found.estimate.beta[place]))
+        });
+        small.extend(own);
+    }
     let evaluate = |x: &[f64]| -> Result<Residuals, DiagnoseError> {
         let mut effects: Vec<(Cause, Vec<f64>)> =
             new.iter().map(|cured| (cured.cause.clone(), cured.values())).collect();

@@ -326,8 +326,34 @@ impl State<'_> {
         let more = (worth(stand) - worth(other)).max(0.0);
         // The square of a drift counts half in ln p.
         let most = MOST.max((2.0 * LITTLE * more).sqrt());
-        let off = |stand: &Stand, column: usize| stand.estimate.beta[column].abs() / self.pool.sd[column];
-        (0..self.pool.nuisance).all(|column| off(stand, column) < most.max(off(other, column)))
+        let strains = |stand: &Stand| -> Vec<f64> {
+            let own =
+                (0..self.pool.nuisance).map(|column| stand.estimate.beta[column] / self.pool.sd[column]);
+            let mut strains: Vec<f64> = own.collect();
+            for (column, strain) in self.stand_ins(stand) {
+                strains[column] += strain;
+            }
+            strains.into_iter().map(f64::abs).collect()
+        };
+        strains(stand).into_iter().zip(strains(other)).all(|(strain, other)| strain < most.max(other))
+    }
+
+    /// Causes of a set that do to the rows what a free parameter does, each with the column of that one and by how many of its
+    /// standard deviations they move it: more mass is mass, whatever it is called.
+    fn stand_ins(&self, stand: &Stand) -> Vec<(usize, f64)> {
+        let parts = stand.parts.iter().filter(|part| part.spread.is_none() && part.trial.columns.len() == 1);
+        let Some(reduced) = self.reduced(&stand.noises, &[]) else { return Vec::new() };
+        let product = |one: usize, other: usize| reduced.matrix[(one, other)];
+        let of = |part: &Part| {
+            let own = part.trial.columns[0];
+            let alike = |free: &usize| {
+                product(own, *free).powi(2) > OTHER_WORDS * product(own, own) * product(*free, *free)
+            };
+            let free = (0..self.case.study.parameters.len()).find(alike)?;
+            let moved = stand.value(own) * product(own, free) / product(free, free);
+            Some((free, moved / self.pool.sd[free]))
+        };
+        parts.filter_map(of).collect()
     }
 
     /// Whether a set with a law says in fewer causes what another says. As many as there may be at most are too many: they

@@ -74,8 +74,9 @@ fn together(blind: &Blind, candidates: &[Candidate]) -> String {
     let amount = |value: f64, unit: &str| {
         if unit.is_empty() { number(value) } else { format!("{} {unit}", number(value)) }
     };
-    // None is moved by more than it is usually uncertain: a straight line says nothing of a tractor that weighs a thousand tons.
-    let least = |(index, share): &(usize, f64)| candidates[*index].size / (share.abs() * own.size);
+    /// So many standard deviations of a prior are still a vehicle: a straight line says nothing of one of a thousand tons.
+    const FARTHEST: f64 = 20.0;
+    let least = |(index, share): &(usize, f64)| FARTHEST * candidates[*index].size / (share.abs() * own.size);
     let step = own.size * blind.imitated_by.iter().map(least).fold(1.0, f64::min);
     let mut names = vec![format!("`{}`", own.name)];
     let mut moves = Vec::new();
@@ -124,11 +125,11 @@ mod tests {
             "These recordings only know the sum of what `brake_drag.force_n` and `soil.coefficient` do: raising \
              `brake_drag.force_n` by 1000 N and lowering `soil.coefficient` by 0.00784 changes nothing that was measured."
         );
-        // A coefficient that would have to go by 0.784 goes by the 0.01 that it is uncertain.
+        // A coefficient that would have to go by 0.784 goes by twenty times the 0.01 that it is uncertain.
         let far =
             Blind { candidate: 1, exact: true, imitated_by: vec![(0, 7.84e-4)], deviation: f64::INFINITY };
         assert!(
-            together(&far, &all).contains("by 12.8 N and lowering `soil.coefficient` by 0.0100"),
+            together(&far, &all).contains("by 255 N and lowering `soil.coefficient` by 0.200"),
             "{}",
             together(&far, &all)
         );

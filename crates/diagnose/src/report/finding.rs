@@ -394,12 +394,16 @@ fn function_parameters(cause: &Cause, function: &crate::profile::Function) -> Ve
 }
 
 fn experiment(cause: &Cause, cured: &Cured, case: &Case) -> String {
+    /// A switch that is logged says when, and not how hard.
+    const HOW_HARD: &str = "log the pressure of the brakes";
+    let switched = case.runs.iter().any(|run| run.measured.trace.get("brake").is_some());
+    let of = |cause: &Cause| if cause.id == "braking" && switched { HOW_HARD } else { cause.experiment };
     if cured.accepted.rivals.is_empty() {
-        return cause.experiment.to_owned();
+        return of(cause).to_owned();
     }
-    let mut runs = vec![cause.experiment];
+    let mut runs = vec![of(cause)];
     for rival in &cured.accepted.rivals {
-        let own = case.causes[rival.cause].experiment;
+        let own = of(&case.causes[rival.cause]);
         if !runs.contains(&own) {
             runs.push(own);
         }

@@ -67,8 +67,8 @@ pub fn go_along(run: &mut Recorded, at_s: &[f64]) -> Result<(), DiagnoseError> {
 
 /// 1 where places grow, −1 where they fall.
 fn way(position_m: &[f64]) -> f64 {
-    let known = || position_m.iter().copied().filter(|place| place.is_finite());
-    match (known().next(), known().last()) {
+    let mut known = position_m.iter().copied().filter(|place| place.is_finite());
+    match (known.next(), known.next_back()) {
         (Some(first), Some(last)) if last < first => -1.0,
         _ => 1.0,
     }
@@ -125,7 +125,7 @@ mod tests {
     fn who_drives_at_one_speed_tells_no_clock() {
         let time_s: Vec<f64> = (0..3000).map(|index| 0.02 * f64::from(index)).collect();
         let places: Vec<f64> = time_s.iter().map(|t| 5.0 * t).collect();
-        let told = ahead_s(&time_s, &[5.0; 3000], &places);
+        let told = ahead_s(&time_s, &vec![5.0; 3000], &places);
         assert!(told.is_none_or(|(_, weight)| weight < 1e-6), "{told:?}");
         assert!(ahead_s(&time_s[..9], &[5.0; 9], &places[..9]).is_none());
     }

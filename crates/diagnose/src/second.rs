@@ -18,7 +18,7 @@ const LEVEL: &str = "rolling_resistance";
 /// What is left is this many times the noise, and more.
 const MORE_THAN_NOISE: f64 = 1.5;
 /// The error with another set of causes has to be less than this share of what it is with the first.
-const BETTER: f64 = 0.8;
+const BETTER: f64 = 0.85;
 
 /// What the runs are to be looked at without.
 fn doubtful(first: &Diagnosis) -> Vec<&'static str> {
@@ -30,8 +30,11 @@ fn doubtful(first: &Diagnosis) -> Vec<&'static str> {
     map.into_iter().chain(clock).collect()
 }
 
-/// Whether runs are told better by another set of causes: those held out, and those fitted no worse.
-fn is_better(other: &Diagnosis, first: &Diagnosis) -> bool {
+/// A map follows the runs that it was made of; what stands in its place may leave so many times the error in those.
+const FOLLOWS: f64 = 1.4;
+
+/// Whether runs are told better by another set of causes: those held out, and those fitted no worse, but for what `id` follows.
+fn is_better(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
     let claims = !other.findings.is_empty() && other.verdict != Verdict::None;
     let errors = |fit: &Fit| -> (f64, f64) {
         let after = |runs: &FitRuns| runs.rmse_after;
@@ -41,14 +44,14 @@ fn is_better(other: &Diagnosis, first: &Diagnosis) -> bool {
     claims
         && other.fit.signal == first.fit.signal
         && held_out < BETTER * held_out_first
-        && fitted < fitted_first
+        && fitted < fitted_first * if id == MAP { FOLLOWS } else { 1.0 }
 }
 
 /// Whether another opinion takes the place of the first, in which `id` was doubtful. A clock that runs apart is one thing; what
 /// takes more than it does to say the same is a patch.
 fn wins(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
     let patches = id == CLOCK && other.findings.len() > first.findings.len();
-    is_better(other, first) && !patches
+    is_better(id, other, first) && !patches
 }
 
 /// The first opinion, or one without what is doubtful in it where that is better; `look` looks with other options.

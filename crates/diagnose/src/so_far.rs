@@ -6,6 +6,7 @@
 
 use crate::balance::{Kind, change};
 use crate::catalogue::{Class, Form};
+use crate::mirror::is_whole;
 use crate::prove::text;
 use crate::recorded::{Recorded, share_paths};
 use crate::refine::{Cured, Refined, plain};
@@ -26,17 +27,21 @@ type Effects = Vec<Vec<Arc<dyn Effect>>>;
 /// Effects by what they are in a scenario.
 type Known = Vec<(Vec<String>, Vec<Arc<dyn Effect>>)>;
 
+/// What changes in every balance, run by run and sample by sample.
+type Changes = Vec<(Kind, Vec<Vec<f64>>)>;
+
 /// Effects of each run, and what the model with them says.
 pub struct SoFar {
-    /// Those that tell how the runs accelerate, and those that regressors are made beside.
-    effects: [Effects; 2],
+    /// Those that tell how the runs accelerate, those that regressors are made beside, and those of them that are masses or
+    /// what masses push on.
+    effects: [Effects; 3],
     /// The free parameters beside them.
     values: Vec<f64>,
     said: Vec<Said>,
     accelerations_m_s2: Vec<Vec<f64>>,
     /// What they do together beyond the sum of what each does beside the others, by balance and run: extra mass pushes on a
     /// slope that was found once, and each of the two has all of that in its regressor.
-    together: Vec<(Kind, Vec<Vec<f64>>)>,
+    together: Changes,
 }
 
 /// An effect in many models at once.
@@ -70,8 +75,16 @@ impl Case<'_> {
         let refined = plain(self, pool, found);
         let shared = share_paths(&self.runs, &self.fit);
         let shown = |cured: &Cured| shared || cured.cause.form != Form::OverPosition;
-        let both = [effects(self, &refined, &|_| true)?, effects(self, &refined, &shown)?];
-        let so_far = self.so_far_of(both, refined.values())?;
+        // Masses, and what they push on; of a wind, which is no sum of columns, nothing of the kind can be said.
+        let is_mass = |cured: &Cured| ["mass", "payload_change"].contains(&cured.cause.id);
+        let pushes = refined.causes.iter().any(is_mass);
+        let weighs = |cured: &Cured| pushes && shown(cured) && !is_whole(&cured.cause);
+        let all = [
+            effects(self, &refined, &|_| true)?,
+            effects(self, &refined, &shown)?,
+            effects(self, &refined, &weighs)?,
+        ];
+        let so_far = self.so_far_of(all, refined.values())?;
         let (mut changed, mut all) = (0.0, 0.0);
         for (run, after) in self.runs.iter().zip(&so_far.accelerations_m_s2) {
             for (before, after) in run.acceleration_m_s2.iter().zip(after) {
@@ -130,7 +143,7 @@ impl Case<'_> {
         self.so_far = Some(so_far);
     }
 
-    fn so_far_of(&self, effects: [Effects; 2], values: Vec<f64>) -> Result<SoFar, DiagnoseError> {
+    fn so_far_of(&self, effects: [Effects; 3], values: Vec<f64>) -> Result<SoFar, DiagnoseError> {
         let with = |effects: &Effects, values: &[f64]| {
             said(&self.runs, &self.kinds, |run| {
                 let model = self.study.model_of(self.study.scenario(), &self.runs[run].measured, values)?;
@@ -143,16 +156,12 @@ impl Case<'_> {
             run.accelerated_m_s2(&said.resistance_n, &said.effective_mass_kg)
         };
         let accelerations_m_s2 = self.runs.iter().zip(&told).map(accelerated).collect();
-        let together = self.together(&effects[1], &said)?;
+        let together = self.together(&effects[2])?;
         Ok(SoFar { effects, values, said, accelerations_m_s2, together })
     }
 
     /// What effects do together, as a model with all of them says it, beyond the sum of what each does beside the others.
-    fn together(
-        &self,
-        effects: &Effects,
-        said_with_all: &[Said],
-    ) -> Result<Vec<(Kind, Vec<Vec<f64>>)>, DiagnoseError> {
+    fn together(&self, effects: &Effects) -> Result<Changes, DiagnoseError> {
         let most = effects.iter().map(Vec::len).max().unwrap_or(0);
         if most < 2 {
             return Ok(Vec::new());
@@ -168,6 +177,8 @@ impl Case<'_> {
                 Ok(beside(model, &others.map(|(_, effect)| Arc::clone(effect)).collect::<Vec<_>>()))
             })
         };
+        // Without none of them, all of them are there.
+        let said_with_all = without(most)?;
         let lesser = (0..most).map(without).collect::<Result<Vec<_>, _>>()?;
         let of = |kind: Kind| {
             let of_run = |(number, run): (usize, &Recorded)| {

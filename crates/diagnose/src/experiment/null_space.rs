@@ -70,12 +70,12 @@ fn candidates(case: &Case, pool: &Pool, refined: &Refined) -> Vec<Candidate> {
 
 /// 'Raising this and lowering that changes nothing.'
 fn together(blind: &Blind, candidates: &[Candidate]) -> String {
+    /// So many standard deviations of a prior are still a vehicle: a straight line says nothing of one of a thousand tons.
+    const FARTHEST: f64 = 20.0;
     let own = &candidates[blind.candidate];
     let amount = |value: f64, unit: &str| {
         if unit.is_empty() { number(value) } else { format!("{} {unit}", number(value)) }
     };
-    /// So many standard deviations of a prior are still a vehicle: a straight line says nothing of one of a thousand tons.
-    const FARTHEST: f64 = 20.0;
     let least = |(index, share): &(usize, f64)| FARTHEST * candidates[*index].size / (share.abs() * own.size);
     let step = own.size * blind.imitated_by.iter().map(least).fold(1.0, f64::min);
     let mut names = vec![format!("`{}`", own.name)];

@@ -4,6 +4,7 @@
 use crate::catalogue::{Cause, Form};
 use crate::contest::Contest;
 use crate::gram::Column;
+use crate::look::MANY_ROWS;
 use crate::noise::Noises;
 use crate::profile::Function;
 use crate::rivals::twin;
@@ -35,7 +36,8 @@ impl State<'_> {
         let (tried, mut unproven) = before;
         let before = unproven.len();
         let mut best = self.needed(best, &mut unproven, needed)?;
-        if unproven.len() > before {
+        // Of many rows one cause more takes long to find.
+        if unproven.len() > before && self.system.row_count() <= MANY_ROWS {
             best = self.instead(best, &mut unproven, needed)?;
         }
         let mut sides = self.sides(&best);

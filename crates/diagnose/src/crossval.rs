@@ -60,12 +60,15 @@ impl State<'_> {
         self.system.chunks.par_iter().map(of_chunk).collect()
     }
 
-    /// The share of a run along which other, fitted runs tell what the maps of a set are.
-    pub fn share_known(&self, parts: &[Part], run: usize) -> f64 {
-        let Some(mapped) = self.mapped(parts) else { return 1.0 };
-        let places = &self.case.runs[run].position_m;
-        let known = places.iter().filter(|at_m| self.is_known(&mapped, run, **at_m)).count();
-        known as f64 / places.len().max(1) as f64
+    /// The share of every run along which other, fitted runs tell what the maps of a set are.
+    pub fn shares_known(&self, parts: &[Part]) -> Vec<f64> {
+        let Some(mapped) = self.mapped(parts) else { return vec![1.0; self.fit.len()] };
+        let of_run = |run: usize| {
+            let places = &self.case.runs[run].position_m;
+            let known = places.iter().filter(|at_m| self.is_known(&mapped, run, **at_m)).count();
+            known as f64 / places.len().max(1) as f64
+        };
+        (0..self.fit.len()).into_par_iter().map(of_run).collect()
     }
 
     /// Where the maps of a set are known; none where it has no map.

@@ -105,8 +105,8 @@ impl Proven {
         let state = State { case, system, pool, fit: &case.fit };
         let parts: Vec<Part> =
             self.found.stand.parts.iter().filter(|part| part.spread.is_some()).cloned().collect();
-        let own = case.fit.iter().zip(&case.bears).map(|(fit, bears)| !fit && *bears).enumerate();
-        own.map(|(run, held_out)| held_out && state.share_known(&parts, run) > KNOWN).collect()
+        let held_out = case.fit.iter().zip(&case.bears).map(|(fit, bears)| !fit && *bears);
+        held_out.zip(state.shares_known(&parts)).map(|(held_out, known)| held_out && known > KNOWN).collect()
     }
 }
 

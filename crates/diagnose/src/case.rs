@@ -285,6 +285,11 @@ impl<'a> Case<'a> {
         self.runs.iter().map(one).collect()
     }
 
+    /// Identifiers of causes.
+    pub fn ids(&self, causes: &[usize]) -> Vec<&'static str> {
+        causes.iter().map(|cause| self.causes[*cause].id).collect()
+    }
+
     /// The rows of every balance, of samples that are `usable`.
     pub fn system(&self, usable: &[Vec<bool>]) -> System {
         let block_s = |kind| block_s(kind, &self.runs, self.rows);

@@ -65,7 +65,7 @@ impl State<'_> {
             if best.parts.len() >= MOST_CAUSES {
                 break;
             }
-            let banned: Vec<&str> = unproven.iter().map(|number| self.case.causes[*number].id).collect();
+            let banned = self.case.ids(unproven);
             let reduced = self.reduced(&best.noises, &best.parts)?;
             let able = |stand: &Stand| {
                 let law = stand.parts.last().is_some_and(|part| self.cause(&part.trial).law.is_some());
@@ -195,7 +195,7 @@ impl State<'_> {
         let gain = |side: &Side| side.lesser.as_ref().map_or(needed, |lesser| best.score - lesser.score);
         sides.sort_by(|one, other| gain(other).total_cmp(&gain(one)));
         // What the runs do not teach each other stands for nothing that they do.
-        let banned: Vec<&str> = unproven.iter().map(|number| self.case.causes[*number].id).collect();
+        let banned = self.case.ids(&unproven);
         let new = |one: &Contest| one.stand.parts.last().map(|part| self.cause(&part.trial));
         for side in &mut sides {
             side.contests.retain(|one| new(one).is_some_and(|cause| !cause.is_banned(&banned)));

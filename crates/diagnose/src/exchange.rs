@@ -14,7 +14,7 @@ impl State<'_> {
     /// The set with that cause exchanged for which another one says most more in its place; or for the plain value of what
     /// was a function, where that says nearly as much. None where every cause is where it belongs.
     pub fn exchanged(&self, best: &Stand, sides: &[Side], banned: &[usize]) -> Option<Stand> {
-        let banned: Vec<&str> = banned.iter().map(|number| self.case.causes[*number].id).collect();
+        let banned = self.case.ids(banned);
         let law = |part: &Part| self.cause(&part.trial).law.is_some();
         if best.parts.iter().any(law) {
             return None;

@@ -258,7 +258,7 @@ fn searched(case: &Case, system: &System, pool: &Pool) -> Result<Found, Diagnose
             break;
         }
         case.step("searching")?;
-        let banned: Vec<&str> = unproven.iter().map(|cause| case.causes[*cause].id).collect();
+        let banned = case.ids(&unproven);
         let other = search_without(case, system, pool, &banned).ok_or_else(none)?;
         let more: Vec<usize> = other.unproven.iter().copied().filter(|one| !unproven.contains(one)).collect();
         unproven.extend(more);

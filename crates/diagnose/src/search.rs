@@ -169,7 +169,7 @@ pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]
     let never = (0..case.causes.len()).filter(|cause| banned.contains(&case.causes[*cause].id)).collect();
     let mut found = state.conclude(best, first, (tried, never), needed)?;
     found.unproven.retain(|cause| !banned.contains(&case.causes[*cause].id));
-    let unproven: Vec<&str> = found.unproven.iter().map(|cause| case.causes[*cause].id).collect();
+    let unproven = case.ids(&found.unproven);
     others.retain(|stand| !stand.parts.iter().any(|part| state.cause(&part.trial).is_banned(&unproven)));
     state.sets_as_good(&mut found, &others);
     Some(found)

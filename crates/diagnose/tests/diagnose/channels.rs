@@ -220,7 +220,6 @@ fn a_consumer_that_is_on_for_a_while_in_each_run_is_told_as_that() {
     assert_eq!(ids, ["auxiliary_power"], "{}", found.diagnosis.answer);
 }
 
-/// What rotates has no weight: of 800 kg of it in 13 t an accelerometer would tell a sixteenth of a slope wrongly.
 /// What is found of a slope with an accelerometer that reads so much too much.
 fn felt_on_a_slope(grade: f64, bias_m_s2: f64) -> Diagnosed {
     let channels =
@@ -246,6 +245,7 @@ fn told(found: &Diagnosed, id: &str, truth: f64, share: f64) {
     assert!(low < truth && truth < high && high - low < share * truth, "{:?}", finding.parameters);
 }
 
+/// What rotates has no weight: of 800 kg of it in 13 t an accelerometer would tell a sixteenth of a slope wrongly.
 #[test]
 fn a_slope_has_the_same_size_in_the_accelerometer_and_in_the_forces() {
     let found = felt_on_a_slope(0.012, 0.0);

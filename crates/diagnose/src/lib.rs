@@ -87,6 +87,7 @@ mod unmoved;
 mod voltage;
 mod way;
 mod widths;
+mod windowed;
 mod withdraw;
 mod words;
 

@@ -4,7 +4,7 @@ use crate::DiagnoseError;
 use crate::balance::{FUEL_J_KG, Kind};
 use crate::recorded::{Recorded, force};
 use crate::voltage::{residual_v, resistance_ohm};
-use headland_sim::{Drive, Inputs, Model, Replay, replay};
+use headland_sim::{Drive, Inputs, Model, Replay, replay_channels};
 use headland_trace::{Origin, Trace};
 use rayon::prelude::*;
 
@@ -38,6 +38,27 @@ pub struct Said {
     pub fuel_kg_s: Option<Vec<f64>>,
 }
 
+/// What is read of a model.
+const CHANNELS: [&str; 17] = [
+    "speed_m_s",
+    "wheel_speed_m_s",
+    "acceleration_m_s2",
+    "effective_mass_kg",
+    "grade",
+    "grade_n",
+    "grade_constant_n",
+    "rotating_inertia_kg",
+    "coasting",
+    "tractive_force_n",
+    "brake_force_n",
+    "battery_voltage_v",
+    "battery_current_a",
+    "state_of_charge",
+    "engine_torque_n_m",
+    "engine_speed_rad_s",
+    "fuel_rate_kg_s",
+];
+
 /// A window of no length: what acts at the recorded speed and force, sample by sample [s].
 const POINTWISE_S: f64 = 0.0;
 
@@ -60,7 +81,7 @@ fn say(model: &Model, run: &Recorded, kinds: &[Kind]) -> Result<Said, DiagnoseEr
     let how = Replay { also: inputs(trace, &run.measured.how), drive, window_s, ..run.measured.how.clone() };
     let replayed = |how: &Replay| {
         let failed = |error| DiagnoseError::Replay { run: run.measured.id.clone(), error };
-        Ok::<_, DiagnoseError>(replay(model, trace, how).map_err(failed)?.trace)
+        Ok::<_, DiagnoseError>(replay_channels(model, trace, how, &CHANNELS).map_err(failed)?.trace)
     };
     let modelled = replayed(&how)?;
     let get = |name: &str| modelled.get(name).map_or_else(|| vec![f64::NAN; modelled.len()], <[f64]>::to_vec);
@@ -94,7 +115,8 @@ fn say(model: &Model, run: &Recorded, kinds: &[Kind]) -> Result<Said, DiagnoseEr
     let pulled = if slips { pulled(run, &modelled)? } else { None };
     let wheel_speed_m_s = match pulled {
         Some(trace) => {
-            replay(model, &trace, &Replay { drive: Drive::Force, window_s: Some(POINTWISE_S), ..how })
+            let how = Replay { drive: Drive::Force, window_s: Some(POINTWISE_S), ..how };
+            replay_channels(model, &trace, &how, &["wheel_speed_m_s"])
                 .map_err(|error| DiagnoseError::Replay { run: run.measured.id.clone(), error })?
                 .trace
                 .get("wheel_speed_m_s")

@@ -10,6 +10,7 @@ use crate::recorded::Recorded;
 use crate::said::Said;
 use crate::sensors::{fault, small_faults};
 use crate::slowed::with_speed;
+use crate::windowed::Throughout;
 use crate::{Case, DiagnoseError};
 
 /// The regressors.
@@ -27,6 +28,8 @@ pub struct Pool {
     pub corrected: Vec<(&'static str, usize)>,
     /// The trials.
     pub trials: Vec<Trial>,
+    /// What causes with windows do throughout.
+    pub throughout: Throughout,
 }
 
 impl Pool {
@@ -136,6 +139,8 @@ pub fn add_trial(
             .find(|trial| cause.does_the_same((term, shape), &case.causes[trial.cause], &trial.shape));
         let column = if let Some(known) = known {
             pool.columns[known.columns[0]].clone()
+        } else if let Some(column) = pool.throughout.column((case, system), (number, term, step), shape)? {
+            column
         } else if cause.form == Form::Measured {
             let mut column = fault(case, system, cause.id, shape.first().copied().unwrap_or(step))?;
             system.silence(&mut column, |kind| kind.among(cause.balances));
@@ -168,16 +173,32 @@ pub fn effect(
     step: f64,
     text: &(impl Fn(&Recorded) -> String + Sync),
 ) -> Result<Column, DiagnoseError> {
-    let kinds = tried(cause, system);
-    let after = case.said_beside(text, &case.study.priors(), &kinds)?;
+    let shown = shown(case, system, cause, step, text)?;
     Ok(system.column(|kind| {
-        if !kinds.contains(&kind) {
-            return silent(case);
-        }
+        let known = shown.iter().find(|(own, _)| *own == kind);
+        known.map_or_else(|| vec![Vec::new(); case.runs.len()], |(_, samples)| samples.clone())
+    }))
+}
+
+/// What an effect does to every sample of the balances that its cause is tried on, per step of it.
+pub fn shown(
+    case: &Case,
+    system: &System,
+    cause: &Cause,
+    step: f64,
+    text: &(impl Fn(&Recorded) -> String + Sync),
+) -> Result<Shown, DiagnoseError> {
+    let kinds = tried(cause, system);
+    if kinds.is_empty() {
+        return Ok(Shown::new());
+    }
+    let after = case.said_beside(text, &case.study.priors(), &kinds)?;
+    let of_kind = |kind: Kind| {
         let mut samples = difference(case, kind, &after, step);
         mute(cause, kind, system, &mut samples);
-        samples
-    }))
+        (kind, samples)
+    };
+    Ok(kinds.into_iter().map(of_kind).collect())
 }
 
 /// What a drive that loses all its force on the way would leave out of the motion, sample by sample [N].
@@ -197,20 +218,8 @@ pub fn per_newton(case: &Case, system: &System) -> Result<Shown, DiagnoseError> 
     /// A force that any vehicle can bear [N].
     const PULL_N: f64 = 100.0;
     let pull = Cause::pull();
-    let kinds = tried(&pull, system);
     let text = pull.written(&[PULL_N]);
-    let after = case.said_beside(&|_| text.clone(), &case.study.priors(), &kinds)?;
-    let of_kind = |kind: Kind| {
-        let mut samples = difference(case, kind, &after, PULL_N);
-        mute(&pull, kind, system, &mut samples);
-        (kind, samples)
-    };
-    Ok(kinds.into_iter().map(of_kind).collect())
-}
-
-/// Nothing, in every run.
-fn silent(case: &Case) -> Vec<Vec<f64>> {
-    vec![Vec::new(); case.runs.len()]
+    shown(case, system, &pull, PULL_N, &|_| text.clone())
 }
 
 /// The balances that a cause is tried on.

@@ -47,7 +47,7 @@ pub use demanded::demands;
 pub use ledger::{Entry, Ledger};
 pub use model::{Model, Named, Resistance, Vehicle};
 pub use plan::{Cycle, Driven, EngineSpeed, Guard, Phase, Pi, Setting, Start, Until, speed_not_kept};
-pub use replay::{Drive, Inputs, Replay, ReplayError, replay};
+pub use replay::{Drive, Inputs, Replay, ReplayError, replay, replay_channels};
 pub use simulation::{Simulation, simulate};
 pub use slope::{LocalFit, local_fit, travelled};
 

@@ -22,6 +22,8 @@ struct Column {
     name: String,
     /// Whether it is left out where it is zero throughout.
     only_if_used: bool,
+    /// Whether nobody reads it.
+    unread: bool,
     /// NaN throughout so far, or zero throughout where that counts as unused; `None` once `values` holds everything.
     idle: Option<f64>,
     values: Vec<f64>,
@@ -30,6 +32,9 @@ struct Column {
 impl Column {
     /// Adds a value where `rows` are there already.
     fn push(&mut self, value: f64, rows: usize, expected: usize) {
+        if self.unread {
+            return;
+        }
         if let Some(idle) = self.idle {
             if value.is_nan() && (idle.is_nan() || rows == 0) {
                 return;
@@ -99,6 +104,7 @@ impl Recorder {
         let column = |(index, name): (usize, String)| Column {
             only_if_used: ONLY_IF_USED.contains(&name.as_str()) || index >= first_effect,
             name,
+            unread: false,
             idle: Some(f64::NAN),
             values: Vec::new(),
         };
@@ -114,6 +120,16 @@ impl Recorder {
     pub fn expecting(mut self, rows: usize) -> Self {
         self.time_s.reserve_exact(rows);
         self.expected = rows;
+        self
+    }
+
+    /// The same with these channels alone; all of them where none are named.
+    pub fn only(mut self, names: Option<&[&str]>) -> Self {
+        if let Some(names) = names {
+            for column in &mut self.columns {
+                column.unread = !names.contains(&column.name.as_str());
+            }
+        }
         self
     }
 

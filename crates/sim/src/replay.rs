@@ -141,10 +141,33 @@ pub enum ReplayError {
 /// # Errors
 /// [`ReplayError`].
 pub fn replay(model: &Model, recorded: &Trace, how: &Replay) -> Result<Outcome, ReplayError> {
+    replayed(model, recorded, how, None)
+}
+
+/// As [`replay`], but the trace holds of its channels those of these names alone: to write down what nobody reads takes as long
+/// as the motion.
+///
+/// # Errors
+/// [`ReplayError`].
+pub fn replay_channels(
+    model: &Model,
+    recorded: &Trace,
+    how: &Replay,
+    names: &[&str],
+) -> Result<Outcome, ReplayError> {
+    replayed(model, recorded, how, Some(names))
+}
+
+fn replayed(
+    model: &Model,
+    recorded: &Trace,
+    how: &Replay,
+    names: Option<&[&str]>,
+) -> Result<Outcome, ReplayError> {
     if recorded.len() < 2 {
         return Err(ReplayError::Short { samples: recorded.len() });
     }
-    let tape = Tape::load(model, recorded, how)?;
+    let tape = Tape { names, ..Tape::load(model, recorded, how)? };
     let outcome = match how.drive {
         Drive::Speed => tape.follow(model, |tape, index, speed, _| tape.accelerated(index, speed))?,
         Drive::Torque | Drive::Force | Drive::Coast if how.window_s == Some(0.0) => tape
@@ -168,6 +191,8 @@ struct Tape<'a> {
     /// Empty where no vertical acceleration is told.
     shaking_m2_s4: Vec<f64>,
     state_of_charge: Option<&'a [f64]>,
+    /// Channels that are read of what the model says; all of them where none are named.
+    names: Option<&'a [&'a str]>,
 }
 
 /// Below this recorded speed [m/s] the vehicle stands, held by whatever held it.
@@ -211,7 +236,17 @@ impl<'a> Tape<'a> {
         let shaking_m2_s4 = told.map_or_else(Vec::new, |(_, columns)| shaking_m2_s4(time_s, columns[0]));
         let state_of_charge = recorded.get("state_of_charge");
         let reversed_from_m = how.reversed_from_m;
-        Ok(Self { reversed_from_m, time_s, motion, position_m, push, also, shaking_m2_s4, state_of_charge })
+        Ok(Self {
+            reversed_from_m,
+            time_s,
+            motion,
+            position_m,
+            push,
+            also,
+            shaking_m2_s4,
+            state_of_charge,
+            names: None,
+        })
     }
 
     /// The circumstances at a share of the way from sample `index` to the next, and whether the vehicle coasts.
@@ -295,7 +330,7 @@ impl<'a> Tape<'a> {
     ) -> Result<Outcome, ReplayError> {
         let mut machine = Machine::new(model, self.time_s[0], self.position_m[0], self.motion.value[0]);
         self.adopt_charge(&mut machine, 0);
-        let mut recorder = Recorder::new(&machine).expecting(self.time_s.len());
+        let mut recorder = Recorder::new(&machine).only(self.names).expecting(self.time_s.len());
         let mut before: Vec<f64> = Vec::new();
         for (index, &time_s) in self.time_s.iter().enumerate() {
             let (given, coasting) = self.given(model, index, 0.0);
@@ -325,7 +360,7 @@ impl<'a> Tape<'a> {
         let mut machine =
             Machine::new(model, self.time_s[0], self.position_m[0], self.motion.value[0].max(0.0));
         self.adopt_charge(&mut machine, 0);
-        let mut recorder = Recorder::new(&machine);
+        let mut recorder = Recorder::new(&machine).only(self.names);
         let mut window_start_s = self.time_s[0];
         for index in 0..self.time_s.len() {
             let (begin_s, next) = (self.time_s[index], (index + 1).min(self.time_s.len() - 1));

@@ -50,6 +50,17 @@ fn inertia_is_told_beside_slopes() {
     assert!(named(&found, "grade") && named(&found, "rotating_inertia"), "{}", found.diagnosis.answer);
 }
 
+/// What is carried resists as what turns with the wheels does, and weighs on slopes besides; slopes that were found beside the
+/// one are too steep for the other.
+#[test]
+fn mass_is_told_beside_slopes() {
+    let slopes = "grade(positions_m: [0, 15, 30, 45, 60, 75, 90, 105, 120], \
+                  grades: [0, 0.03, 0.045, 0.01, -0.03, -0.045, -0.02, 0.02, 0])";
+    let hidden = format!("{slopes}, mass(extra_mass_kg: 1500)");
+    let found = found(&recorded(0.069, &hidden), &Options::default()).unwrap();
+    assert!(named(&found, "grade") && named(&found, "mass"), "{}", found.diagnosis.answer);
+}
+
 /// A drag in the runs that are fitted, and none in the one that is held out.
 #[test]
 fn a_cause_that_makes_an_unseen_run_worse_is_not_claimed() {

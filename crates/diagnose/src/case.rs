@@ -348,6 +348,10 @@ impl<'a> Case<'a> {
         }
         let temperatures = self.runs.iter().filter_map(|run| run.measured.trace.get("air_temperature_c"));
         let (coldest, warmest) = range(temperatures.flatten().copied());
+        let told = self.runs.iter().all(|run| Inputs::OilTemperature.whole(&run.measured.trace));
+        let oils =
+            self.runs.iter().filter(|_| told).filter_map(|run| run.measured.trace.get("oil_temperature_c"));
+        let (cool, hottest) = range(oils.flatten().copied());
         let weight_n = model.vehicle.mass_kg * model.gravity_m_s2;
         let resistances: Vec<f64> = self
             .nominal
@@ -377,6 +381,7 @@ impl<'a> Case<'a> {
             drives: self.driven() || !self.runs.iter().all(Recorded::force_is_known),
             passes: passes.into_iter().max().unwrap_or(1),
             temperatures_k: (warmest - coldest).max(0.0),
+            oil_k: (hottest - cool).max(0.0),
             beginnings: beginnings(&self.fit, &self.bears),
             pulls: bearing().any(|run| run.force_n.is_some() || run.pull_n.is_some()),
         }

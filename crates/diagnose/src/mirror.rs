@@ -19,6 +19,33 @@ pub fn is_whole(cause: &Cause) -> bool {
     cause.id == "wind"
 }
 
+/// What of a wind blows along the one line on which all runs went, which they tell whatever blows across it.
+#[derive(Clone, Copy, Debug)]
+pub struct Lane {
+    /// Along the line [m/s].
+    pub speed_m_s: f64,
+    /// Its standard deviation [m/s].
+    pub sd_m_s: f64,
+    /// Where it comes from, clockwise from north [rad].
+    pub from_rad: f64,
+}
+
+impl Lane {
+    /// Of a wind, north and east, with the standard deviations of both and their correlation.
+    pub fn of(axis_rad: f64, [north, east]: [(f64, f64); 2], correlation: f64) -> Self {
+        let (sine, cosine) = axis_rad.sin_cos();
+        let along = cosine * north.0 + sine * east.0;
+        let (north_sd, east_sd) = (cosine * north.1, sine * east.1);
+        let variance = north_sd.powi(2) + east_sd.powi(2) + 2.0 * correlation * north_sd * east_sd;
+        let turned = if along < 0.0 { std::f64::consts::PI } else { 0.0 };
+        Self {
+            speed_m_s: along.abs(),
+            sd_m_s: variance.max(0.0).sqrt(),
+            from_rad: (axis_rad + turned).rem_euclid(std::f64::consts::TAU),
+        }
+    }
+}
+
 /// Gives a part that the data did not ask for a value to begin with.
 pub fn lean<'a>(values: impl Iterator<Item = &'a mut f64>) {
     let mut values: Vec<&mut f64> = values.collect();
@@ -67,6 +94,15 @@ mod tests {
         assert_eq!(values, [-6.0, 3.0]);
         lean(values.iter_mut());
         assert_eq!(values, [-6.0, 3.0], "what leans already stays");
+    }
+
+    /// On a lane to the north-east a wind of (3, 4) m/s blows with 7/√2 m/s along it, however far the two trade places.
+    #[test]
+    fn what_blows_along_is_known_though_north_and_east_are_not() {
+        let lane = Lane::of(std::f64::consts::FRAC_PI_4, [(-3.0, 2.0), (-4.0, 2.0)], -0.99);
+        assert!((lane.speed_m_s - 7.0 / 2.0_f64.sqrt()).abs() < 1e-12, "{lane:?}");
+        assert!((lane.from_rad - 1.25 * std::f64::consts::PI).abs() < 1e-12, "{lane:?}");
+        assert!((lane.sd_m_s - 2.0 * 0.01_f64.sqrt()).abs() < 1e-12, "{lane:?}");
     }
 
     /// Along a lane to the north-east a wind from the north is one from the east; twice is the wind itself.

@@ -4,7 +4,7 @@ use crate::catalogue::{Cause, Class, Form, Term, spell};
 use crate::events::{Event, LEAST_GAIN, named};
 use crate::gram::Column;
 use crate::losses::SMALL_LOSS;
-use crate::mirror::{self, is_whole};
+use crate::mirror::{self, Lane, is_whole};
 use crate::profile::Function;
 use crate::recorded::Recorded;
 use crate::regeneration::limit_w;
@@ -38,16 +38,30 @@ pub struct Cured {
     pub events: Vec<Event>,
     /// Values that explain as much as its own, seen in a mirror along the lane; none where there are none.
     pub mirrored: Option<Vec<f64>>,
+    /// What of a wind blows along the line of all runs, where there is one.
+    pub lane: Option<Lane>,
 }
 
 impl Cured {
-    /// Whether every amplitude of it may as well be nought.
+    /// Whether every amplitude of it may as well be nought. What blows along a lane is none where that may be, whatever is open
+    /// of what blows across.
     pub fn may_be_none(&self) -> bool {
+        if let Some(lane) = self.lane {
+            return lane.speed_m_s <= HALF_95 * lane.sd_m_s;
+        }
         let amplitudes = self.cause.terms.iter().zip(&self.values).filter(|(term, _)| term.linear);
         let mut known = amplitudes.map(|(_, (_, ci95))| ci95).peekable();
         self.cause.form == Form::Parameters
             && known.peek().is_some()
             && known.all(|ci95| ci95[0] <= 0.0 && ci95[1] >= 0.0)
+    }
+
+    /// Tells what of a wind blows along the line of all runs, from its parts, whose estimates are correlated.
+    fn told_along(&mut self, case: &Case, correlation: f64) {
+        let ([north, east, ..], true) = (&self.values[..], is_whole(&self.cause)) else { return };
+        let known = |(value, ci95): &(f64, [f64; 2])| (*value, (ci95[1] - ci95[0]) / (2.0 * HALF_95));
+        let parts = [known(north), known(east)];
+        self.lane = mirror::axis_rad(case).map(|axis_rad| Lane::of(axis_rad, parts, correlation));
     }
 
     /// Whether single runs tell it of themselves: spells, or what works in one run.
@@ -173,6 +187,8 @@ pub fn refine(
     let free_lost = of_free.iter().any(|estimate| {
         estimate.prior_sd.is_some_and(|sd| (estimate.value - estimate.prior).abs() > FAR * sd)
     });
+    let mut correlation = fitted.correlation.clone();
+    let mut before = count;
     let of_causes = if free_lost || of_causes.iter().zip(&of_slots).any(|(one, sd)| lost(one, *sd)) {
         // What was found is then fitted once more beside the free parameters as they are: its columns were made beside
         // those of the scenario.
@@ -180,6 +196,7 @@ pub fn refine(
         match both_ways(case, system, pool, found, &new, Some(&beside)) {
             Ok(fitted) => {
                 mirrored = fitted.mirrored;
+                (correlation, before) = (fitted.fit.correlation, 0);
                 fitted.fit.estimates
             }
             Err(DiagnoseError::Interrupted) => return Err(DiagnoseError::Interrupted),
@@ -198,6 +215,14 @@ pub fn refine(
     for ((place, term), estimate) in slots.iter().zip(&of_causes) {
         let own = &mut refined.causes[physics[*place]].values[*term];
         *own = (estimate.value, widest(estimate.value, estimate.ci95, own.1));
+    }
+    for (place, number) in physics.iter().enumerate() {
+        let own: Vec<usize> = (0..slots.len()).filter(|slot| slots[*slot].0 == place).collect();
+        let known = match own[..] {
+            [one, other, ..] => correlation.get(before + one).and_then(|row| row.get(before + other)),
+            _ => None,
+        };
+        refined.causes[*number].told_along(case, known.copied().unwrap_or(0.0));
     }
     if let Some((place, values)) = mirrored {
         refined.causes[physics[place]].mirrored = Some(values);
@@ -263,7 +288,17 @@ fn linear(case: &Case, pool: &Pool, found: &Found, beyond: &Beyond) -> Refined {
     for (accepted, widths) in found.accepted.iter().zip(&beyond.causes) {
         let cause = case.causes[accepted.trial.cause].clone();
         let values = if cause.is_function() { Vec::new() } else { started(case, accepted, found, widths) };
-        causes.push(Cured { cause, accepted: accepted.clone(), values, events: Vec::new(), mirrored: None });
+        let correlation = correlated(accepted, found);
+        let mut own = Cured {
+            cause,
+            accepted: accepted.clone(),
+            values,
+            events: Vec::new(),
+            mirrored: None,
+            lane: None,
+        };
+        own.told_along(case, correlation);
+        causes.push(own);
     }
     for correction in &case.corrections {
         let Some((_, column)) = pool.corrected.iter().find(|(own, _)| *own == correction.id) else {
@@ -280,7 +315,7 @@ fn linear(case: &Case, pool: &Pool, found: &Found, beyond: &Beyond) -> Refined {
         let values = vec![(value, ci95)];
         let accepted = correction.accepted.clone();
         let cause = case.causes[accepted.trial.cause].clone();
-        causes.push(Cured { cause, accepted, values, events: Vec::new(), mirrored: None });
+        causes.push(Cured { cause, accepted, values, events: Vec::new(), mirrored: None, lane: None });
     }
     Refined { causes, free: free.collect(), null_space: Vec::new() }
 }
@@ -301,6 +336,15 @@ pub fn spells(case: &Case, system: &System, events: &[Event], refined: &mut Refi
             None => cured,
         });
     }
+}
+
+/// Correlation of the two parts of a cause; none where it has one alone.
+fn correlated(accepted: &Accepted, found: &Found) -> f64 {
+    let place = |column: &usize| found.used.iter().position(|used| used == column);
+    let places: Vec<usize> = accepted.trial.columns.iter().filter_map(place).collect();
+    let [one, other] = places[..] else { return 0.0 };
+    let covariance = &found.estimate.covariance;
+    covariance[(one, other)] / (covariance[(one, one)] * covariance[(other, other)]).sqrt()
 }
 
 /// Whether spells hold a vehicle back as gently and as long as an implement on the ground does, so that nothing tells them from a
@@ -345,6 +389,7 @@ fn spelt(id: &'static str, events: Vec<Event>, balance: usize) -> Cured {
         values: vec![(mean, [mean - HALF_95 * sd, mean + HALF_95 * sd])],
         events,
         mirrored: None,
+        lane: None,
     }
 }
 

@@ -464,22 +464,15 @@ fn a_fan_on_the_crankshaft_is_found_by_the_speed_of_the_engine() {
     assert!(told > 5e3 && told < 2e4, "{told}: {}", said.answer);
 }
 
-/// Oil that was recorded to warm up thins: a drag by its temperature, which no clock and no start says.
-#[test]
-fn a_drag_by_the_recorded_temperature_of_the_oil_is_found_as_an_equation() {
-    /// Drag at the temperature below, by the speed [N s/m], and how it fades [K].
-    const DRAG_N_S_M: f64 = 900.0;
-    const AT_C: f64 = 20.0;
-    const FADES_K: f64 = 14.0;
+/// Oil that a cooler, which comes and goes, warms and cools within each run, and a drag by the speed and by its temperature.
+fn dragged_by_oil(drag_n: impl Fn(f64, f64) -> f64) -> Recording {
     let mut recording = recorded(0.069, "");
     for (number, run) in recording.runs.iter_mut().enumerate() {
-        // A cooler that comes and goes: warmer and colder again within each run.
         let oil_c: Vec<f64> =
             run.trace.time_s().iter().map(|t| 35.0 + 15.0 * (t / 9.0 + 1.3 * number as f64).sin()).collect();
         let force = run.trace.remove("tractive_force_n").unwrap().values;
         let speed = run.trace.get("speed_m_s").unwrap();
-        let more = |(v, oil_c): (&f64, &f64)| DRAG_N_S_M * v.max(0.0) * (-(oil_c - AT_C) / FADES_K).exp();
-        let drag: Vec<f64> = speed.iter().zip(&oil_c).map(more).collect();
+        let drag: Vec<f64> = speed.iter().zip(&oil_c).map(|(v, oil_c)| drag_n(v.max(0.0), *oil_c)).collect();
         let coasting = run.trace.remove("coasting").unwrap();
         let until = coasting.values.iter().position(|on| *on > 0.5).unwrap() - 1;
         let force = force.iter().zip(&drag).map(|(force, drag)| force + drag).collect();
@@ -487,6 +480,32 @@ fn a_drag_by_the_recorded_temperature_of_the_oil_is_found_as_an_equation() {
         run.trace.push("oil_temperature_c", oil_c, Origin::Measured).unwrap();
         run.trace = run.trace.slice(0.0, run.trace.time_s()[until]);
     }
+    recording
+}
+
+/// Oil that was recorded to warm up thins: a drag by its temperature, which no clock and no start says.
+#[test]
+fn oil_that_was_recorded_drags_by_its_temperature() {
+    /// Drag at the temperature below, by the speed [N s/m], and how it fades [K].
+    const DRAG_N_S_M: f64 = 900.0;
+    const AT_C: f64 = 20.0;
+    const FADES_K: f64 = 14.0;
+    let recording = dragged_by_oil(|v, oil_c| DRAG_N_S_M * v * (-(oil_c - AT_C) / FADES_K).exp());
+    let found = found(&recording, &Options::default()).unwrap();
+    let (said, findings) = (&found.diagnosis, &found.diagnosis.findings);
+    assert!(findings.len() == 1 && findings[0].id == "driveline_temperature", "{}", said.answer);
+    assert!(findings[0].depends_on.contains(&"oil_temperature_c".to_owned()), "{}", said.answer);
+    for (name, truth) in [("cold_viscous_n_s_m", DRAG_N_S_M), ("temperature_scale_k", FADES_K)] {
+        let one = findings[0].parameters.iter().find(|one| one.name == name).unwrap();
+        assert!(one.ci95[0] < truth && truth < one.ci95[1], "{one:?}");
+        assert!(one.ci95[1] - one.ci95[0] < 0.2 * truth, "{one:?}");
+    }
+}
+
+/// What comes on where the oil is hot is no oil that thins.
+#[test]
+fn a_drag_above_a_temperature_of_the_oil_is_found_as_an_equation() {
+    let recording = dragged_by_oil(|v, oil_c| 150.0 * v * (1.0 + ((oil_c - 38.0) / 2.0).tanh()));
     let found = found(&recording, &Options::default()).unwrap();
     let said = &found.diagnosis;
     assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);

@@ -53,6 +53,8 @@ pub struct Around {
     pub passes: usize,
     /// Range of the air temperature [K]; 0 where it is not known.
     pub temperatures_k: f64,
+    /// Range of the oil's temperature [K]; 0 where it is not known throughout.
+    pub oil_k: f64,
     /// Whether the force at the wheels is known anywhere, beyond what motion takes.
     pub pulls: bool,
     /// Runs that may have begun otherwise than the others, by number.
@@ -166,6 +168,30 @@ fn drag_area(around: &Around) -> Term {
 fn load(around: &Around) -> Term {
     const LEAST: f64 = 0.7;
     linear("mass_kg", "kg", 0.1 * around.mass_kg).no_less(-LEAST * around.mass_kg)
+}
+
+/// Oil that changes by less says nothing of how it thins [K].
+const LEAST_OIL_K: f64 = 5.0;
+
+/// Oil that drags by its recorded temperature: mineral oils fall to a third over 20 to 50 K.
+fn by_oil(weight: f64) -> Cause {
+    const SCALES_K: [f64; 4] = [12.0, 20.0, 33.0, 60.0];
+    const REFERENCE_C: f64 = 20.0;
+    cause(
+        "driveline_temperature",
+        MOTION,
+        vec![
+            positive("cold_force_n", "N", 0.006 * weight),
+            positive("cold_viscous_n_s_m", "N s/m", 0.001 * weight),
+            shape("temperature_scale_k", "K").within(5.0, 150.0),
+            shape("reference_temperature_c", "°C").held(REFERENCE_C),
+        ],
+        "F = (F₀ + k v) e^((T₀ − T)/ΔT), T of the oil",
+        &["oil_temperature_c", "speed_m_s"],
+        "oil in the driveline that drags by its temperature",
+        "repeat with the oil warm and the tyres cold",
+    )
+    .shaped(SCALES_K.map(|scale_k| vec![scale_k, REFERENCE_C]).into())
 }
 
 /// What may differ from run to run: the surface, what is hitched or mounted.
@@ -633,6 +659,9 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             )
             .shaped(vec![vec![15.0], vec![20.0]]),
         );
+    }
+    if around.oil_k > LEAST_OIL_K {
+        all.push(by_oil(weight));
     }
     powers(&mut all, around);
     sensors(&mut all, around);

@@ -304,8 +304,11 @@ fn parameters(cured: &Cured) -> Vec<ParameterReport> {
                 Some([north, east, ..]) => with_image(from, east.atan2(*north), half),
                 _ => own,
             };
+            // Whatever blows across, it is no weaker than what blows along.
+            let least = cured.lane.map_or(0.0, |lane| lane.speed_m_s - HALF_95 * lane.sd_m_s);
+            let low = (speed - HALF_95 * along).max(least).clamp(0.0, speed);
             vec![
-                one("speed_m_s", speed, [(speed - HALF_95 * along).max(0.0), speed + HALF_95 * along], "m/s"),
+                one("speed_m_s", speed, [low, speed + HALF_95 * along], "m/s"),
                 one("from_rad", from, from_ci, "rad"),
             ]
         }

@@ -9,7 +9,7 @@ pub use number::{number, plain};
 
 use crate::balance::Kind;
 use crate::catalogue::{Cause, Class};
-use crate::refine::Cured;
+use crate::refine::{Cured, HALF_95};
 use crate::report::{ParameterReport, RivalReport};
 use number::{quantity, with_interval};
 
@@ -102,10 +102,16 @@ fn values(cured: &Cured, parameters: &[ParameterReport]) -> Values {
     let find = |name: &str| parameters.iter().find(|one| one.name == name);
     if let ("wind", Some(speed), Some(from)) = (cured.cause.id, find("speed_m_s"), find("from_rad")) {
         // Runs that all go the same way, there and back, show no more of it.
-        if from.ci95[1] - from.ci95[0] > std::f64::consts::PI {
-            return Values::Of("of which these runs show only the part along their lanes".to_owned());
-        }
         let degrees = |rad: f64| rad.to_degrees();
+        if from.ci95[1] - from.ci95[0] > std::f64::consts::PI {
+            let lane = cured.lane.map_or_else(String::new, |lane| {
+                let half = HALF_95 * lane.sd_m_s;
+                let ci95 = [lane.speed_m_s - half, lane.speed_m_s + half];
+                let along = with_interval(lane.speed_m_s, ci95, "m/s");
+                format!(", {along} from {:.0}°", degrees(lane.from_rad))
+            });
+            return Values::Of(format!("of which these runs show only the part along their lanes{lane}"));
+        }
         return Values::Of(format!(
             "of {} from {}°",
             with_interval(speed.value, speed.ci95, "m/s"),

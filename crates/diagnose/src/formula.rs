@@ -63,9 +63,10 @@ impl Sought {
         said.iter().enumerate().map(|(index, value)| of_one[run][every * index] * value).collect()
     }
 
-    /// What may stand in the formula. What is lost on the way of a force is no matter of places or times.
+    /// What may stand in the formula. What is lost on the way of a force is no matter of places or times; turns load the gears
+    /// between wheels that turn unlike each other.
     fn variables(&self, case: &Case) -> Vec<Variable> {
-        const OF_A_DRIVE: [&str; 5] = ["v", "temperature", "m", "engine_speed", "oil_temperature"];
+        const OF_A_DRIVE: [&str; 6] = ["v", "temperature", "m", "engine_speed", "oil_temperature", "kappa"];
         let mut all = variables(case, if self.target == Target::Force { Kind::Motion } else { self.kind });
         if self.target == Target::Share {
             all.retain(|variable| OF_A_DRIVE.contains(&variable.name.as_str()));

@@ -4,6 +4,7 @@ use crate::balance::{Kind, Rows, System, bearing, block_s, kinds};
 use crate::catalogue::{ARTEFACTS, Around, Cause, causes};
 use crate::own::own;
 use crate::recorded::{Recorded, recorded};
+use crate::remembered::Remembered;
 use crate::said::{Said, said};
 use crate::search::Accepted;
 use crate::sensors::corrected;
@@ -94,6 +95,8 @@ pub(crate) struct Case<'a> {
     pub rows: Rows,
     /// What was found so far, where anything was.
     pub so_far: Option<SoFar>,
+    /// What effects do beside it.
+    pub remembered: Remembered,
     /// Samples at which no channel shows a fault by itself; empty before they were looked for.
     pub sound: Vec<Vec<bool>>,
     /// Whether each run may be fitted.
@@ -158,6 +161,7 @@ impl<'a> Case<'a> {
             nominal: Vec::new(),
             rows: Rows::Few,
             so_far: None,
+            remembered: Remembered::default(),
             sound: Vec::new(),
             fit: Vec::new(),
             bears: Vec::new(),
@@ -213,6 +217,7 @@ impl<'a> Case<'a> {
 
     /// What the nominal model says of the runs, and how it would have accelerated.
     pub fn suppose(&mut self) -> Result<(), DiagnoseError> {
+        self.remembered.forget();
         self.nominal = self.said(self.study.scenario(), &self.study.priors())?;
         for (run, said) in self.runs.iter_mut().zip(&self.nominal) {
             run.acceleration_m_s2 = run.accelerated_m_s2(&said.resistance_n, &said.effective_mass_kg);

@@ -59,6 +59,7 @@ mod prove;
 mod recorded;
 mod refine;
 mod regeneration;
+mod remembered;
 mod report;
 mod rivals;
 mod rows;

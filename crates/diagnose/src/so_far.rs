@@ -137,6 +137,7 @@ impl Case<'_> {
     }
 
     fn take_up(&mut self, so_far: SoFar) {
+        self.remembered.forget();
         for (run, acceleration) in self.runs.iter_mut().zip(&so_far.accelerations_m_s2) {
             run.acceleration_m_s2.clone_from(acceleration);
         }

@@ -7,10 +7,11 @@ use crate::gram::Column;
 use crate::look::MANY_ROWS;
 use crate::losses::{bent_engine, slow_powers, small_losses, torque_errors};
 use crate::recorded::Recorded;
+use crate::remembered::Driven;
 use crate::said::Said;
 use crate::sensors::{fault, small_faults};
 use crate::slowed::with_speed;
-use crate::windowed::Throughout;
+use crate::windowed::in_window;
 use crate::{Case, DiagnoseError};
 
 /// The regressors.
@@ -28,8 +29,6 @@ pub struct Pool {
     pub corrected: Vec<(&'static str, usize)>,
     /// The trials.
     pub trials: Vec<Trial>,
-    /// What causes with windows do throughout.
-    pub throughout: Throughout,
 }
 
 impl Pool {
@@ -139,7 +138,7 @@ pub fn add_trial(
             .find(|trial| cause.does_the_same((term, shape), &case.causes[trial.cause], &trial.shape));
         let column = if let Some(known) = known {
             pool.columns[known.columns[0]].clone()
-        } else if let Some(column) = pool.throughout.column((case, system), (number, term, step), shape)? {
+        } else if let Some(column) = in_window(case, system, cause, (term, step), shape)? {
             column
         } else if cause.form == Form::Measured {
             let mut column = fault(case, system, cause.id, shape.first().copied().unwrap_or(step))?;
@@ -173,11 +172,17 @@ pub fn effect(
     step: f64,
     text: &(impl Fn(&Recorded) -> String + Sync),
 ) -> Result<Column, DiagnoseError> {
-    let shown = shown(case, system, cause, step, text)?;
-    Ok(system.column(|kind| {
-        let known = shown.iter().find(|(own, _)| *own == kind);
-        known.map_or_else(|| vec![Vec::new(); case.runs.len()], |(_, samples)| samples.clone())
-    }))
+    Ok(case.column(system, &shown(case, system, cause, step, text)?))
+}
+
+impl Case<'_> {
+    /// The rows of what is shown in samples, and of nothing elsewhere.
+    pub fn column(&self, system: &System, shown: &Shown) -> Column {
+        system.column(|kind| {
+            let known = shown.iter().find(|(own, _)| *own == kind);
+            known.map_or_else(|| vec![Vec::new(); self.runs.len()], |(_, samples)| samples.clone())
+        })
+    }
 }
 
 /// What an effect does to every sample of the balances that its cause is tried on, per step of it.
@@ -192,13 +197,17 @@ pub fn shown(
     if kinds.is_empty() {
         return Ok(Shown::new());
     }
-    let after = case.said_beside(text, &case.study.priors(), &kinds)?;
-    let of_kind = |kind: Kind| {
-        let mut samples = difference(case, kind, &after, step);
-        mute(cause, kind, system, &mut samples);
-        (kind, samples)
-    };
-    Ok(kinds.into_iter().map(of_kind).collect())
+    let texts = case.runs.iter().map(text).collect();
+    let known = case.remembered(Driven { kinds, texts, step }, |driven| {
+        let after = case.said_beside(text, &case.study.priors(), &driven.kinds)?;
+        let of_kind = |kind: &Kind| (*kind, difference(case, *kind, &after, step));
+        Ok(driven.kinds.iter().map(of_kind).collect())
+    })?;
+    let mut shown = Shown::clone(&known);
+    for (kind, samples) in &mut shown {
+        mute(cause, *kind, system, samples);
+    }
+    Ok(shown)
 }
 
 /// What a drive that loses all its force on the way would leave out of the motion, sample by sample [N].

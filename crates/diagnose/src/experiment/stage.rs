@@ -9,6 +9,7 @@ use crate::catalogue::{Cause, Class};
 use crate::gram::Column;
 use crate::noise::{Noise, Shape};
 use crate::refine::{Refined, said_with_all};
+use crate::remembered::Remembered;
 use crate::sensors::{PITCH, PITCH_RAD_S2_M, fault};
 use crate::trial::{Pool, Trial, add_trial, for_run, nuisance};
 use crate::{Case, DiagnoseError};
@@ -98,6 +99,7 @@ impl<'a> Stage<'a> {
             nominal: Vec::new(),
             rows: case.rows,
             so_far: None,
+            remembered: Remembered::default(),
             unmoved: case.unmoved,
             chosen: false,
             paths: case.paths.clone(),

@@ -464,23 +464,50 @@ fn a_fan_on_the_crankshaft_is_found_by_the_speed_of_the_engine() {
     assert!(told > 5e3 && told < 2e4, "{told}: {}", said.answer);
 }
 
-/// Oil that a cooler, which comes and goes, warms and cools within each run, and a drag by the speed and by its temperature.
-fn dragged_by_oil(drag_n: impl Fn(f64, f64) -> f64) -> Recording {
+/// Drives with one channel more, by time and run, and a drag that the drive has to overcome, by the speed, its force and that
+/// channel.
+fn dragged(
+    name: &str,
+    channel: impl Fn(f64, usize) -> f64,
+    drag_n: impl Fn(f64, f64, f64) -> f64,
+) -> Recording {
     let mut recording = recorded(0.069, "");
     for (number, run) in recording.runs.iter_mut().enumerate() {
-        let oil_c: Vec<f64> =
-            run.trace.time_s().iter().map(|t| 35.0 + 15.0 * (t / 9.0 + 1.3 * number as f64).sin()).collect();
-        let force = run.trace.remove("tractive_force_n").unwrap().values;
+        let along: Vec<f64> = run.trace.time_s().iter().map(|t| channel(*t, number)).collect();
+        let mut force = run.trace.remove("tractive_force_n").unwrap().values;
         let speed = run.trace.get("speed_m_s").unwrap();
-        let drag: Vec<f64> = speed.iter().zip(&oil_c).map(|(v, oil_c)| drag_n(v.max(0.0), *oil_c)).collect();
+        for ((force, v), value) in force.iter_mut().zip(speed).zip(&along) {
+            *force += drag_n(v.max(0.0), *force, *value);
+        }
         let coasting = run.trace.remove("coasting").unwrap();
         let until = coasting.values.iter().position(|on| *on > 0.5).unwrap() - 1;
-        let force = force.iter().zip(&drag).map(|(force, drag)| force + drag).collect();
         run.trace.push("tractive_force_n", force, Origin::Measured).unwrap();
-        run.trace.push("oil_temperature_c", oil_c, Origin::Measured).unwrap();
+        run.trace.push(name, along, Origin::Measured).unwrap();
         run.trace = run.trace.slice(0.0, run.trace.time_s()[until]);
     }
     recording
+}
+
+/// Oil that a cooler, which comes and goes, warms and cools within each run, and a drag by the speed and by its temperature.
+fn dragged_by_oil(drag_n: impl Fn(f64, f64) -> f64) -> Recording {
+    let oil_c = |t: f64, run: usize| 35.0 + 15.0 * (t / 9.0 + 1.3 * run as f64).sin();
+    dragged("oil_temperature_c", oil_c, |v, _, oil_c| drag_n(v, oil_c))
+}
+
+/// Gears between wheels that turn unlike each other lose a share of the drive in turns: no force of the turn alone, and no
+/// efficiency.
+#[test]
+fn a_loss_of_the_drive_in_turns_is_found_as_a_share_of_it() {
+    /// Share that is lost where the path turns like this [1/m].
+    const SHARE: f64 = 0.2;
+    const AT_PER_M: f64 = 0.1;
+    let curvature_per_m = |t: f64, run: usize| 0.1 * (t / 4.0 + run as f64).sin();
+    let lost_n = |_: f64, force_n: f64, kappa: f64| SHARE * (kappa / AT_PER_M).abs() * force_n.abs();
+    let found = found(&dragged("curvature_per_m", curvature_per_m, lost_n), &Options::default()).unwrap();
+    let said = &found.diagnosis;
+    assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);
+    assert!(said.findings[0].equation.starts_with("F = |F_drive| ("), "{}", said.findings[0].equation);
+    assert!(said.findings[0].depends_on.contains(&"curvature_per_m".to_owned()), "{}", said.answer);
 }
 
 /// Oil that was recorded to warm up thins: a drag by its temperature, which no clock and no start says.

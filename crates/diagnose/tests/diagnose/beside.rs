@@ -1,6 +1,8 @@
 //! Causes beside others, at their size, and on runs that they were not fitted to.
 
-use super::setting::{found, named, recorded, recording_of};
+use super::setting::{
+    found, found_of_scenario, named, recorded, recording_of, recording_of_scenario, scenario,
+};
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{FindingKind, Options, Verdict};
 use headland_trace::Trace;
@@ -16,6 +18,28 @@ fn a_storm_is_a_wind_of_its_own_size() {
     }
     let held = found.diagnosis.fit.held_out.as_ref().unwrap();
     assert!(held.rmse_after < 2.0 * held.noise, "{held:?}");
+}
+
+/// On a lane to the north-east and back neither the northern part of a wind is known nor the eastern one, and what blows along the
+/// lane is: it was doubted, since each of the two may as well be none.
+#[test]
+fn a_wind_along_a_lane_is_certain_whatever_blows_across() {
+    const SPEED_M_S: f64 = 5.0;
+    let wind = format!("wind(speed_m_s: {SPEED_M_S:?}, from_rad: 0.8)");
+    let aslant = |text: String| text.replace("\"0 deg\"", "\"45 deg\"").replace("\"180 deg\"", "\"225 deg\"");
+    let registry = headland_stock::registry();
+    let channels = ["speed_m_s", "position_m", "heading_rad", "tractive_force_n"];
+    let noisy = |name: &str, value: f64, draws: &mut Draws| {
+        if name == "speed_m_s" { value + 0.02 * draws.normal() } else { value }
+    };
+    let recording =
+        recording_of_scenario(&aslant(scenario(0.069, &wind, "")), &registry, &channels, (11, &noisy));
+    let nominal = aslant(scenario(0.069, "", ""));
+    let found = found_of_scenario(&nominal, &recording, &Options::default(), &registry).unwrap().diagnosis;
+    assert_eq!(found.verdict, Verdict::MissingPhysics, "{}", found.answer);
+    assert!(found.findings.len() == 1 && found.findings[0].id == "wind", "{}", found.answer);
+    let [low, high] = found.findings[0].parameters[0].ci95;
+    assert!(low > 0.7 * SPEED_M_S && low < SPEED_M_S && SPEED_M_S < high, "{low} to {high} m/s");
 }
 
 /// What blows across the lane shows by how it bends the drag alone, and no other cause patches what columns lack of that; nor

@@ -51,8 +51,7 @@ mod tests {
                 balance: 0,
             };
             let cause = spell("grade");
-            let cured =
-                Cured { cause, accepted, values: Vec::new(), events: Vec::new(), mirrored: None, lane: None };
+            let cured = Cured::new(cause, accepted, Vec::new());
             let name = "coefficient".to_owned();
             let free = Free { name, prior: 0.05, value: 0.06, ci95: [0.058, 0.062], asked: 0.06 };
             let mut refined = Refined { causes: vec![cured], free: vec![free], null_space: Vec::new() };

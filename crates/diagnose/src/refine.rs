@@ -43,6 +43,11 @@ pub struct Cured {
 }
 
 impl Cured {
+    /// A cause with values, which nothing else is known of.
+    pub fn new(cause: Cause, accepted: Accepted, values: Vec<(f64, [f64; 2])>) -> Self {
+        Self { cause, accepted, values, events: Vec::new(), mirrored: None, lane: None }
+    }
+
     /// Whether every amplitude of it may as well be nought. What blows along a lane is none where that may be, whatever is open
     /// of what blows across.
     pub fn may_be_none(&self) -> bool {
@@ -289,14 +294,7 @@ fn linear(case: &Case, pool: &Pool, found: &Found, beyond: &Beyond) -> Refined {
         let cause = case.causes[accepted.trial.cause].clone();
         let values = if cause.is_function() { Vec::new() } else { started(case, accepted, found, widths) };
         let correlation = correlated(accepted, found);
-        let mut own = Cured {
-            cause,
-            accepted: accepted.clone(),
-            values,
-            events: Vec::new(),
-            mirrored: None,
-            lane: None,
-        };
+        let mut own = Cured::new(cause, accepted.clone(), values);
         own.told_along(case, correlation);
         causes.push(own);
     }
@@ -315,7 +313,7 @@ fn linear(case: &Case, pool: &Pool, found: &Found, beyond: &Beyond) -> Refined {
         let values = vec![(value, ci95)];
         let accepted = correction.accepted.clone();
         let cause = case.causes[accepted.trial.cause].clone();
-        causes.push(Cured { cause, accepted, values, events: Vec::new(), mirrored: None, lane: None });
+        causes.push(Cured::new(cause, accepted, values));
     }
     Refined { causes, free: free.collect(), null_space: Vec::new() }
 }
@@ -375,22 +373,17 @@ fn spelt(id: &'static str, events: Vec<Event>, balance: usize) -> Cured {
     let sd = events.iter().map(|event| event.sd_n).fold(0.0, f64::max);
     let trial =
         Trial { cause: 0, shape: Vec::new(), columns: Vec::new(), terms: Vec::new(), beside: Vec::new() };
-    Cured {
-        cause: spell(id),
-        accepted: Accepted {
-            trial,
-            gain: events.iter().map(|event| event.gain).fold(0.0, f64::max),
-            by_chance: LEAST_GAIN,
-            rivals: Vec::new(),
-            function: None,
-            along: None,
-            balance,
-        },
-        values: vec![(mean, [mean - HALF_95 * sd, mean + HALF_95 * sd])],
-        events,
-        mirrored: None,
-        lane: None,
-    }
+    let accepted = Accepted {
+        trial,
+        gain: events.iter().map(|event| event.gain).fold(0.0, f64::max),
+        by_chance: LEAST_GAIN,
+        rivals: Vec::new(),
+        function: None,
+        along: None,
+        balance,
+    };
+    let values = vec![(mean, [mean - HALF_95 * sd, mean + HALF_95 * sd])];
+    Cured { events, ..Cured::new(spell(id), accepted, values) }
 }
 
 /// A parameter of a new cause: which cause, which term.

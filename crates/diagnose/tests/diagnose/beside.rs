@@ -1,7 +1,7 @@
 //! Causes beside others, at their size, and on runs that they were not fitted to.
 
 use super::setting::{
-    found, found_of_scenario, named, recorded, recording_of, recording_of_scenario, scenario,
+    found, found_of_scenario, named, recorded, recorded_of_scenario, recording_of, scenario,
 };
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{FindingKind, Options, Verdict};
@@ -28,12 +28,7 @@ fn a_wind_along_a_lane_is_certain_whatever_blows_across() {
     let wind = format!("wind(speed_m_s: {SPEED_M_S:?}, from_rad: 0.8)");
     let aslant = |text: String| text.replace("\"0 deg\"", "\"45 deg\"").replace("\"180 deg\"", "\"225 deg\"");
     let registry = headland_stock::registry();
-    let channels = ["speed_m_s", "position_m", "heading_rad", "tractive_force_n"];
-    let noisy = |name: &str, value: f64, draws: &mut Draws| {
-        if name == "speed_m_s" { value + 0.02 * draws.normal() } else { value }
-    };
-    let recording =
-        recording_of_scenario(&aslant(scenario(0.069, &wind, "")), &registry, &channels, (11, &noisy));
+    let recording = recorded_of_scenario(&aslant(scenario(0.069, &wind, "")), &registry);
     let nominal = aslant(scenario(0.069, "", ""));
     let found = found_of_scenario(&nominal, &recording, &Options::default(), &registry).unwrap().diagnosis;
     assert_eq!(found.verdict, Verdict::MissingPhysics, "{}", found.answer);

@@ -65,10 +65,15 @@ pub fn recorded(coefficient: f64, effects: &str) -> Recording {
 
 /// As [`recorded`], with effects of a registry.
 pub fn recorded_with(coefficient: f64, effects: &str, registry: &Registry) -> Recording {
+    recorded_of_scenario(&scenario(coefficient, effects, ""), registry)
+}
+
+/// The drives of a scenario with the noise of a speed sensor.
+pub fn recorded_of_scenario(text: &str, registry: &Registry) -> Recording {
     let noisy = |name: &str, value: f64, draws: &mut Draws| {
         if name == "speed_m_s" { value + 0.02 * draws.normal() } else { value }
     };
-    recording_of((coefficient, effects), registry, &CHANNELS, (11, &noisy))
+    recording_of_scenario(text, registry, &CHANNELS, (11, &noisy))
 }
 
 /// What a sensor makes of a sample: name of the channel, sample, draws of noise.

@@ -137,6 +137,7 @@ fn diagnose_once(
     faults.extend(case.faulty_scale().as_ref().map(faults::scaled));
     faults.retain(|fault| case.wanted(fault.id));
     engine_off::leave_out(&mut case, &mut sound);
+    overrun::leave_out(&case, &mut sound);
     if let Some(late) = begun::late(&case) {
         faults.extend(begun::set_right(&mut case, late, &mut sound)?);
     }

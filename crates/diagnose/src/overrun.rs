@@ -1,13 +1,22 @@
 //! Engines that the wheels drive: where a vehicle slows down harder than its resistances do, the model's engine takes all of it
 //! and no fuel. A driver brakes as well, and where nobody recorded it the engine may take less and go on to burn: what it does then
-//! says nothing of forces and consumers. Nor does it where the force was measured at wheels that brakes hold as well.
+//! says nothing of forces and consumers. Nor does it where the force was measured at wheels that brakes hold as well. And where the
+//! vehicle's engine cut its fuel the model's may burn some, on a slope that the scenario does not know: the fuel says no more there
+//! than that the wheels drove the engine, however hard they did. A run that drove up there tells how steep it is.
 
+use crate::Case;
+use crate::faults::SLOWEST_M_S;
 use crate::recorded::Recorded;
 use crate::said::Said;
 use headland_calibrate::statistics::median;
+use std::collections::BTreeSet;
 
 /// Share of the fuel that an engine takes elsewhere: one that takes more than this has not cut it off.
 const BURNS: f64 = 0.05;
+/// Less than this share of it is no fuel.
+const NOTHING: f64 = 0.02;
+/// Places that are no further apart are one [m].
+const ONE_PLACE_M: f64 = 20.0;
 
 /// The samples at which the model's engine takes no fuel and that of the vehicle may: the force follows from the motion in a run
 /// whose brakes were not recorded, or the fuel itself says that the engine went on to burn. Then whatever slows the wheels may be
@@ -33,6 +42,60 @@ fn goes_on_to_burn(measured: &[f64], modelled: &[f64]) -> bool {
     };
     let (cut, elsewhere) = (of(true), of(false));
     !cut.is_empty() && !elsewhere.is_empty() && median(&cut) > BURNS * median(&elsewhere)
+}
+
+/// Leaves samples out at which an engine cut its fuel in a place where one burnt some as well, as those that come from the other side do.
+pub fn leave_out(case: &Case, usable: &mut [Vec<bool>]) {
+    let burnt: Vec<Option<Vec<Burnt>>> = case.runs.iter().map(burnt).collect();
+    #[expect(clippy::cast_possible_truncation, reason = "a place of some kilometres")]
+    let place =
+        |run: &Recorded, sample: usize| (run.path, (run.position_m[sample] / ONE_PLACE_M).round() as i64);
+    let samples_of = |wanted: Burnt| {
+        let runs = case.runs.iter().zip(&burnt);
+        runs.enumerate().flat_map(move |(number, (run, burnt))| {
+            let own = burnt.iter().flatten().enumerate().filter(move |(_, burnt)| **burnt == wanted);
+            own.map(move |(sample, _)| (number, sample, run))
+        })
+    };
+    let told: BTreeSet<_> = samples_of(Burnt::Some).map(|(_, sample, run)| place(run, sample)).collect();
+    for (number, sample, run) in samples_of(Burnt::Nothing) {
+        if told.contains(&place(run, sample)) {
+            usable[number][sample] = false;
+        }
+    }
+}
+
+/// What an engine took at a sample.
+#[derive(Clone, Copy, PartialEq)]
+enum Burnt {
+    Nothing,
+    Some,
+    /// Nobody knows, or the vehicle stood, or what drives it was measured.
+    NoMatter,
+}
+
+/// What the engine of a run took, sample by sample; none where that was not recorded, or its torque was as well.
+fn burnt(run: &Recorded) -> Option<Vec<Burnt>> {
+    if run.engine_w.is_some() {
+        return None;
+    }
+    let fuel_kg_s = run.measured.trace.get("fuel_rate_kg_s")?;
+    let least_kg_s = NOTHING * usual_kg_s(fuel_kg_s);
+    let of = |(sample, own_kg_s): (usize, &f64)| {
+        let follows = run.force_n.as_ref().is_none_or(|force_n| !force_n[sample].is_finite());
+        match run.motion.value[sample] > SLOWEST_M_S && follows && own_kg_s.is_finite() {
+            true if *own_kg_s > least_kg_s => Burnt::Some,
+            true => Burnt::Nothing,
+            false => Burnt::NoMatter,
+        }
+    };
+    Some(fuel_kg_s.iter().enumerate().map(of).collect())
+}
+
+/// What an engine takes in the middle of the time that it takes any [kg/s].
+fn usual_kg_s(measured: &[f64]) -> f64 {
+    let burnt: Vec<f64> = measured.iter().copied().filter(|own| *own > 0.0).collect();
+    if burnt.is_empty() { 0.0 } else { median(&burnt) }
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use super::setting::{found_of_scenario, named, recording_of_scenario};
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::Options;
+use headland_recording::RecordedRun;
 
 const SCENARIO: &str = r#"(
     about: "a tractor that stands between two fields",
@@ -120,4 +121,68 @@ fn a_force_that_nobody_listed_is_told_by_the_torque_of_an_engine() {
     assert!(named(&found, "unlisted"), "{}", said.answer);
     let told = said.findings.iter().find(|finding| finding.id == "unlisted").unwrap();
     assert!(told.equation.starts_with("F = "), "{}", told.equation);
+}
+
+/// Down a hill that nobody knows an engine cuts its fuel, and takes no less however steep it is: that is no shallower slope, and no
+/// soft ground at the steep places.
+#[test]
+fn an_engine_that_cuts_its_fuel_downhill_bends_no_slope() {
+    /// Places [m] and slopes of the hill.
+    const HILL: [[f64; 2]; 8] = [
+        [0.0, 0.0],
+        [100.0, 0.0],
+        [150.0, 0.04],
+        [200.0, 0.06],
+        [300.0, 0.0],
+        [350.0, -0.06],
+        [400.0, 0.0],
+        [700.0, 0.0],
+    ];
+    const LENGTH_M: f64 = 700.0;
+    const DRIVES: &str = r"cycle: [
+        Reach(speed_m_s: 6, acceleration_m_s2: 0.4), Hold(for_s: 45),
+        Reach(speed_m_s: 8, acceleration_m_s2: 0.4), Hold(for_s: 30),
+        Reach(speed_m_s: 0, acceleration_m_s2: 0.4),
+    ],";
+    const SPEEDS: &str = r#"runs: [(id: "f0", with: {}), (id: "f1", with: {"cycle.0.speed_m_s": 5.0}),
+        (id: "f2", with: {"cycle.0.speed_m_s": 7.0})"#;
+    let registry = headland_stock::registry();
+    let text = SCENARIO
+        .replacen(STANDS, DRIVES, 1)
+        .replacen(RUNS, SPEEDS, 1)
+        .replacen("coefficient: 0.05", "coefficient: 0.012", 1)
+        .replacen("sd: 0.005, bounds: (0.01, 0.3)", "sd: 0.001, bounds: (0.005, 0.1)", 1);
+    let channels = ["speed_m_s", "position_m", "fuel_rate_kg_s"];
+    // The same way, from either end of it.
+    let of = |reversed: bool, seed: u64| {
+        let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+            "speed_m_s" => value + 0.01 * draws.normal(),
+            "fuel_rate_kg_s" => value * (1.0 + 0.01 * draws.normal()),
+            "position_m" if reversed => LENGTH_M - value,
+            _ => value,
+        };
+        let mut points: Vec<[f64; 2]> = HILL.to_vec();
+        if reversed {
+            points = points.iter().rev().map(|[at_m, slope]| [LENGTH_M - at_m, -slope]).collect();
+        }
+        let [places, slopes] =
+            [0, 1].map(|part| points.iter().map(|point| point[part]).collect::<Vec<f64>>());
+        let hidden = format!("    effects: [grade(positions_m: {places:?}, grades: {slopes:?})],\n    free:");
+        let truth = text.replacen("    free:", &hidden, 1);
+        let mut recording = recording_of_scenario(&truth, &registry, &channels, (seed, &noisy));
+        for run in &mut recording.runs {
+            (run.reversed, run.held_out) = (reversed, run.id == "f2");
+        }
+        recording
+    };
+    let mut recording = of(false, 51);
+    let back = of(true, 53).runs.into_iter();
+    recording.runs.extend(back.map(|run| RecordedRun { id: format!("{}_back", run.id), ..run }));
+    let found = found_of_scenario(&text, &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    println!("{}", said.answer);
+    let [slope] = &said.findings[..] else { panic!("{}", said.answer) };
+    assert_eq!(slope.id, "grade", "{}", said.answer);
+    let steepest = slope.parameters.iter().find(|one| one.name == "grade").unwrap().value.abs();
+    assert!((steepest / 0.06 - 1.0).abs() < 0.1, "{}", said.answer);
 }

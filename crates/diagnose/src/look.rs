@@ -167,19 +167,26 @@ impl Look {
 
     /// Searches once more with shapes between the points of the grids, and with causes as they are at their size.
     pub fn sharpen(&mut self, case: &Case) -> Result<(), DiagnoseError> {
-        /// Speeds of one cause show one after the other.
-        const ROUNDS: usize = 2;
+        /// Speeds of one cause show one after the other, and a window finds its edges beside what was found first.
+        const ROUNDS: usize = 3;
         let speeds = |found: &Found| -> usize {
             found.accepted.iter().map(|one| case.causes[one.trial.cause].speeds()).sum()
         };
+        let windows = |found: &Found| -> Vec<(usize, Vec<f64>)> {
+            let windowed =
+                found.accepted.iter().filter(|one| case.causes[one.trial.cause].window().is_some());
+            windowed.map(|one| (one.trial.cause, one.trial.shape.clone())).collect()
+        };
         for _ in 0..ROUNDS {
             let before = speeds(&self.found);
+            let sharp = windows(&self.found);
             let finer = sharpen::sharpen(case, &self.system, &mut self.pool, &self.found)?;
             let bent = bend::bend(case, &self.system, &mut self.pool, &self.found)?;
             if finer || bent {
                 self.found = searched(case, &self.system, &self.pool)?;
             }
-            if speeds(&self.found) <= before {
+            let anew = windows(&self.found).iter().any(|window| !sharp.contains(window));
+            if speeds(&self.found) <= before && !anew {
                 break;
             }
         }

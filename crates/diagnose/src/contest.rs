@@ -28,6 +28,8 @@ impl Contest {
 
 /// The cause that is switched.
 const SWITCHED: &str = "auxiliary_power";
+/// Jumps show a consumer where they say so many times as much as a steady function does.
+const JUMPS: f64 = 1.5;
 /// Trials whose noise is estimated anew.
 const FINALISTS: usize = 8;
 /// Trials within this of the best one are judged, though they be many.
@@ -97,11 +99,16 @@ impl State<'_> {
         if let Some(top) = judged.first_mut() {
             self.reshape(top, stand);
         }
-        // Jumps are for what no steady function shows: beside one they would only follow the noise closer.
+        // Jumps are for what no steady function shows: beside one that shows most of it they would only follow the noise closer.
         let best = judged.iter().find(|one| !one.jumps());
-        let steady = best.and_then(|one| Some(self.cause(&one.stand.parts.last()?.trial)));
-        if steady.is_some_and(|cause| cause.is_function() && cause.id == SWITCHED) {
-            judged.retain(|one| !one.jumps());
+        let shown = best.and_then(|one| {
+            let cause = self.cause(&one.stand.parts.last()?.trial);
+            (cause.is_function() && cause.id == SWITCHED).then(|| one.stand.score - stand.score)
+        });
+        // In long recordings, where the noise of a minute is not that of an hour, there is always something to jump to.
+        let most = if self.system.row_count() > MANY_ROWS { f64::INFINITY } else { JUMPS };
+        if let Some(shown) = shown {
+            judged.retain(|one| !one.jumps() || one.stand.score - stand.score > most * shown.max(1.0));
         }
         judged
     }

@@ -114,6 +114,8 @@ const LEAST_SHARE: f64 = 0.01;
 pub const OTHER_WORDS: f64 = 0.97;
 /// Two causes that leave less than this share of the smaller one when they are added cancel each other: neither is there.
 const CANCELLED: f64 = 0.3;
+/// What they are in a balance matters from this share of what the smaller is in all, and of the noise.
+const OPENED: f64 = 0.3;
 
 /// Searches the causes.
 pub fn search(case: &Case, system: &System, pool: &Pool) -> Option<Found> {
@@ -270,8 +272,14 @@ impl State<'_> {
         let cancels = |one: usize, other: usize| {
             let sum: Column =
                 effects[one].iter().zip(&effects[other]).map(|(one, other)| one + other).collect();
-            let smaller = sizes[one].iter().sum::<f64>().min(sizes[other].iter().sum());
-            in_noise(&sum).iter().sum::<f64>() < CANCELLED * smaller
+            let left = in_noise(&sum);
+            let smaller = |balance: usize| sizes[one][balance].min(sizes[other][balance]);
+            let all: f64 = sizes[one].iter().sum::<f64>().min(sizes[other].iter().sum());
+            // In one balance as well, what one opens for the sake of another balance the other only shuts.
+            let shut = |balance: usize| {
+                smaller(balance) > OPENED * all.max(1.0) && left[balance] < CANCELLED * smaller(balance)
+            };
+            left.iter().sum::<f64>() < CANCELLED * all || (0..left.len()).any(shut)
         };
         let pairs = (0..effects.len()).flat_map(|one| (0..one).map(move |other| (one, other)));
         sizes.iter().all(heard)

@@ -78,7 +78,7 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
                 added |= grow(case, system, pool, found, (cause, &best))?;
             }
             if best != shape {
-                // What fades by a time constant of its own is no better for having found it first.
+                // What fades by a time constant of its own, or is there for a while, is no better for having found it first.
                 for (alike, shape) in alike(case, cause, &best) {
                     add_trial(case, system, pool, alike, &shape)?;
                 }
@@ -161,17 +161,20 @@ fn likeliest(
     Ok(greatest)
 }
 
-/// A cause of this shape, and others that fade by a time constant as well, each with it and with what it holds itself.
+/// A cause of this shape, and others that fade by a time constant or are there for a while as well, each with it and with what it
+/// holds itself.
 fn alike(case: &Case, cause: usize, shape: &[f64]) -> Vec<(usize, Vec<f64>)> {
     let of_shape = |cause: usize| case.causes[cause].terms.iter().filter(|term| !term.linear);
     let free = |cause: usize| of_shape(cause).filter(|term| !term.is_held());
-    let fades = |cause: usize| free(cause).map(|term| term.name).eq(["time_constant_s"]);
+    let names = |cause: usize| free(cause).map(|term| term.name).collect::<Vec<_>>();
+    let own = names(cause);
+    let shared = own == ["time_constant_s"] || own == ["from_s", "to_s"];
     let class = case.causes[cause].class;
     let moved: Vec<f64> =
         of_shape(cause).zip(shape).filter(|(term, _)| !term.is_held()).map(|(_, value)| *value).collect();
     let others = (0..case.causes.len()).filter(|other| {
         let same = case.causes[*other].class == class && case.causes[*other].form == Form::Parameters;
-        *other != cause && same && fades(cause) && fades(*other)
+        *other != cause && same && shared && names(*other) == own
     });
     let with = |other: usize| {
         let mut moved = moved.iter();

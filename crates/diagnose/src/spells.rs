@@ -8,7 +8,7 @@ use crate::gram::Column;
 use crate::look::{Look, MANY_ROWS};
 use crate::places::of_places;
 use crate::search::{Accepted, Found, search_without, worth};
-use crate::state::{Stand, State};
+use crate::state::{Part, Stand, State};
 use crate::{Case, DiagnoseError, unlisted};
 
 /// Spells in single runs are set aside, and what every run has in common is looked for once more without them.
@@ -76,12 +76,14 @@ fn quiet(case: &mut Case, look: &Look) -> Result<Vec<Event>, DiagnoseError> {
         return Ok(Vec::new());
     }
     let state = State { case, system: &look.system, pool: &look.pool, fit: &case.fit };
-    let mut starts = vec![&look.found.stand];
+    let mut starts = vec![look.found.stand.clone()];
     if !look.found.stand.parts.is_empty() {
-        starts.push(&look.found.first);
+        starts.push(look.found.first.clone());
     }
+    // Or beside some of it: what else was found may have stood in for them.
+    starts.extend(state.subsets(&look.found.stand));
     let enough = worth(&look.found.stand) + LEAST;
-    let told = starts.into_iter().filter_map(|start| state.with_spots(start, enough));
+    let told = starts.iter().filter_map(|start| state.with_spots(start, enough));
     let Some((score, spots)) = told.max_by(|one, other| one.0.total_cmp(&other.0)) else {
         return Ok(Vec::new());
     };
@@ -102,6 +104,16 @@ fn worth_with_a_law(case: &mut Case, look: &Look) -> Result<f64, DiagnoseError> 
 }
 
 impl State<'_> {
+    /// Some of the causes of a set, not all and not none.
+    fn subsets(&self, stand: &Stand) -> Vec<Stand> {
+        let taken = |set: usize| -> Vec<Part> {
+            let parts = stand.parts.iter().enumerate();
+            parts.filter(|(place, _)| set >> place & 1 == 1).map(|(_, part)| part.clone()).collect()
+        };
+        let all = (1 << stand.parts.len()) - 1;
+        (1..all).filter_map(|set| self.settle(&taken(set), &stand.noises)).collect()
+    }
+
     /// How good a set is with spells beside it, and what those are; none where no spell stands out. It ought to become as
     /// good as is `wanted`.
     fn with_spots(&self, start: &Stand, wanted: f64) -> Option<(f64, Vec<Spot>)> {

@@ -147,7 +147,7 @@ pub struct Doubts {
 /// What a diagnosis says in a word. Beside what is certain, one cause in doubt leaves open what is missing; it takes nothing
 /// from a sensor's fault. Where far more than noise is left, something is missing all the same: no cause is claimed then, or
 /// what is claimed may stand in for it, unless it is `timed` and no run can show it of another: then the runs that were fitted
-/// have to be near the noise. A free parameter that ends so
+/// have to be near the noise. Nor is certain what leaves most of the error that the noise does not explain. A free parameter that ends so
 /// many standard deviations (`strain`) from what was known of it stands in for something as well. A fault that may as well be
 /// physics leaves open whether anything is missing, and so does a cause that may as well be none (`slight`). What makes the error grow in
 /// runs that it never saw is not certain either, whatever it is.
@@ -161,6 +161,11 @@ pub fn verdict(findings: &[FindingReport], fit: &Fit, doubts: &Doubts) -> Verdic
     const STRAINED: f64 = 3.3;
     /// Beside what was found, which may be mistaken by as much as its own error allows, it has to be further.
     const STRAINED_BESIDE: f64 = 4.0;
+    /// Beside a sensor's fault, which a parameter may share, further still: no fault explains that.
+    const STRAINED_BY_A_FAULT: f64 = 5.0;
+    /// What leaves so many times the noise, and this share of the error, says little of what is missing.
+    const LEFT: f64 = 5.0;
+    const MOST_LEFT: f64 = 0.7;
     let Doubts { timed, slight, strain } = *doubts;
     let far = fit.lack_of_fit > FAR;
     let any = |kind: FindingKind| findings.iter().any(|finding| finding.kind == kind);
@@ -168,10 +173,15 @@ pub fn verdict(findings: &[FindingReport], fit: &Fit, doubts: &Doubts) -> Verdic
         let far = fit.lack_of_fit > FAR_WITHOUT;
         return if far || strain > STRAINED { Verdict::CannotTell } else { Verdict::None };
     };
-    let strained = strain > STRAINED_BESIDE && !any(FindingKind::Artefact);
+    let strained = strain > if any(FindingKind::Artefact) { STRAINED_BY_A_FAULT } else { STRAINED_BESIDE };
     let claims = any(FindingKind::Physics) || any(FindingKind::Unlisted);
     let far_fitted = fit.fitted.rmse_after > FAR * fit.fitted.noise;
-    let doubtful = claims && (far && (!timed || far_fitted) || fit.grows() || slight) || strained;
+    let leaves = |runs: &super::FitRuns| {
+        runs.rmse_after > LEFT * runs.noise && runs.rmse_after > MOST_LEFT * runs.rmse_before
+    };
+    let says_little = !timed && fit.held_out.as_ref().is_some_and(leaves);
+    let rough = far && (!timed || far_fitted) || says_little;
+    let doubtful = claims && (rough || fit.grows() || slight) || strained;
     if first.kind == FindingKind::Unlisted && !first.is_doubtful() && !doubtful {
         Verdict::Unlisted
     } else if first.is_doubtful()
@@ -491,6 +501,10 @@ mod tests {
         let law = [finding(FindingKind::Unlisted, "unlisted", None)];
         assert_eq!(verdict(&law, 3.0, false), Verdict::Unlisted);
         assert_eq!(verdict(&law, 40.0, false), Verdict::CannotTell);
+        // A law that leaves four fifths of the error, eight times the noise, is none.
+        let left = |timed| super::verdict(&law, &fit(8.0, 0.8), &Doubts { timed, ..Doubts::default() });
+        assert_eq!(left(false), Verdict::CannotTell);
+        assert_eq!(left(true), Verdict::Unlisted);
     }
 
     #[test]
@@ -532,5 +546,6 @@ mod tests {
         assert_eq!(verdict(&[finding(Physics, "wind", None)], 4.5), Verdict::CannotTell);
         assert_eq!(verdict(&[finding(Unlisted, "unlisted", None)], 4.5), Verdict::CannotTell);
         assert_eq!(verdict(&[finding(Artefact, "latency", None)], 4.5), Verdict::SensorArtefact);
+        assert_eq!(verdict(&[finding(Artefact, "force_scale", None)], 6.0), Verdict::CannotTell);
     }
 }

@@ -1,9 +1,10 @@
-//! What an engine does that is no physics.
+//! What is told by the torque or the fuel of an engine, and what an engine does that is no physics.
 
 use super::setting::{found_of_scenario, named, recording_of_scenario};
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::Options;
 use headland_recording::RecordedRun;
+use std::sync::LazyLock;
 
 const SCENARIO: &str = r#"(
     about: "a tractor that stands between two fields",
@@ -72,6 +73,17 @@ const ROLLS: &str = r"start: (position_m: 0, speed_m_s: 3),
 const RUNS: &str = r#"runs: [(id: "f0", with: {}), (id: "f1", with: {}), (id: "f2", with: {})"#;
 const APART: &str = r#"runs: [(id: "f0", with: {}), (id: "f1", with: {"cycle.0.speed_m_s": 5.0}),
         (id: "f2", with: {"cycle.3.speed_m_s": 6.0})"#;
+
+/// Work between ends of a field, without a flag.
+static LONG: LazyLock<String> = LazyLock::new(|| {
+    const LEVELS_M_S: [u32; 10] = [6, 3, 8, 4, 9, 2, 7, 5, 9, 3];
+    let level =
+        |speed_m_s: u32| format!("Reach(speed_m_s: {speed_m_s}, acceleration_m_s2: 0.4), Hold(for_s: 12), ");
+    let levels = format!("cycle: [{}],", LEVELS_M_S.map(level).concat());
+    const SPEEDS: &str = r#"runs: [(id: "f0", with: {}), (id: "f1", with: {"cycle.0.speed_m_s": 5.0}),
+        (id: "f2", with: {"cycle.4.speed_m_s": 6.5})"#;
+    SCENARIO.replacen(STANDS, &levels, 1).replacen(RUNS, SPEEDS, 1).replacen("sd: 2000", "sd: 700", 1)
+});
 
 /// A flag tells when a vehicle rolls freely, and nothing tells what drives it else: the torque of the engine shows what is lost
 /// on the way to the wheels.
@@ -185,4 +197,64 @@ fn an_engine_that_cuts_its_fuel_downhill_bends_no_slope() {
     assert_eq!(slope.id, "grade", "{}", said.answer);
     let steepest = slope.parameters.iter().find(|one| one.name == "grade").unwrap().value.abs();
     assert!((steepest / 0.06 - 1.0).abs() < 0.1, "{}", said.answer);
+}
+
+/// Cold oil, and a fan that is on for a while in every run: beside the cold the edges of the fan are where they are.
+#[test]
+fn a_consumer_finds_its_edges_beside_cold_oil() {
+    const HIDDEN: &str = "    effects: [
+        driveline_temperature(cold_force_n: 900, cold_viscous_n_s_m: 90, time_constant_s: 150),
+        auxiliary_power(times_s: [57, 142], powers_w: [9000]),
+    ],
+    free:";
+    let registry = headland_stock::registry();
+    let text = LONG.clone();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "engine_torque_n_m" => value + 30.0 * draws.normal(),
+        "engine_speed_rad_s" => value + 0.3 * draws.normal(),
+        _ => value,
+    };
+    let channels = ["speed_m_s", "engine_torque_n_m", "engine_speed_rad_s"];
+    let recording =
+        recording_of_scenario(&text.replacen("    free:", HIDDEN, 1), &registry, &channels, (61, &noisy));
+    let found = found_of_scenario(&text, &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    let ids: Vec<&str> = said.findings.iter().map(|finding| finding.id.as_str()).collect();
+    assert!(ids.contains(&"auxiliary_power") && named(&found, "driveline_temperature"), "{}", said.answer);
+    let fan = said.findings.iter().find(|finding| finding.id == "auxiliary_power").unwrap();
+    let value = |name: &str| {
+        fan.parameters.iter().find(|one| one.name == name).unwrap_or_else(|| panic!("{}", said.answer)).value
+    };
+    assert!((value("from_s") - 57.0).abs() < 2.0 && (value("to_s") - 142.0).abs() < 2.0, "{}", said.answer);
+}
+
+/// Consumers that some runs switch at other times than others are a course of each run, not what all runs have in common.
+#[test]
+fn consumers_that_each_run_switches_at_times_of_its_own_are_told() {
+    let registry = headland_stock::registry();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "fuel_rate_kg_s" => value + 3e-5 * draws.normal(),
+        _ => value,
+    };
+    let channels = ["speed_m_s", "fuel_rate_kg_s"];
+    let of = |times_s: [u32; 2]| {
+        let hidden =
+            format!("    effects: [auxiliary_power(times_s: {times_s:?}, powers_w: [8000])],\n    free:");
+        recording_of_scenario(&LONG.replacen("    free:", &hidden, 1), &registry, &channels, (63, &noisy))
+    };
+    let (mut recording, other) = (of([60, 130]), of([25, 85]));
+    for run in [1, 4] {
+        recording.runs[run] = other.runs[run].clone();
+    }
+    let found = found_of_scenario(&LONG, &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    let ids: Vec<&str> = said.findings.iter().map(|finding| finding.id.as_str()).collect();
+    assert_eq!(ids, ["auxiliary_power"], "{}", said.answer);
+    let course = &found.effects[0].trace;
+    let at = |time_s: f64| course.time_s().partition_point(|own| *own < time_s);
+    let power_w = course.get("auxiliary_power_w").unwrap();
+    let (off, on) = (power_w[at(45.0)], power_w[at(100.0)]);
+    assert!((on - off).abs() > 10_000.0, "{off} and {on}: {}", said.answer);
 }

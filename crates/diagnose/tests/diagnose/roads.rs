@@ -109,3 +109,35 @@ fn a_resistance_that_rises_in_the_cold_is_told_beside_the_slopes_of_many_roads()
     let elsewhere = found.elsewhere.unwrap();
     assert!(elsewhere.contains("rolling_temperature") && !elsewhere.contains("grade("), "{elsewhere}");
 }
+
+/// A tank fills in all runs, and in some of them an implement pulls for a while: a course that each run takes could draw both.
+#[test]
+fn a_pull_of_single_runs_is_told_beside_a_load_that_comes() {
+    const FILLS: &str = "payload_change(times_s: [0, 40, 150, 300], masses_kg: [0, 0, 4000, 4000])";
+    let registry = headland_stock::registry();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "tractive_force_n" => value + 400.0 * draws.normal(),
+        _ => value,
+    };
+    let channels = ["speed_m_s", "tractive_force_n"];
+    let mut all: Option<Recording> = None;
+    for number in 0..6_u32 {
+        let pulls = if number % 2 == 0 { ", drawbar_load(force_n: 4000, from_s: 95, to_s: 140)" } else { "" };
+        let hidden = drive(&format!("{FILLS}{pulls}"));
+        let mut recording =
+            recording_of_scenario(&hidden, &registry, &channels, (700 + u64::from(number), &noisy));
+        let mut run = recording.runs.remove(0);
+        (run.id, run.path, run.held_out) = (format!("r{number}"), None, number == 5);
+        all.get_or_insert(recording).runs.push(run);
+    }
+    let found = found_of_scenario(&drive(""), &all.unwrap(), &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    let [one, other] = &said.findings[..] else { panic!("{}", said.answer) };
+    let (load, pull) = if one.id == "payload_change" { (one, other) } else { (other, one) };
+    assert_eq!([load.id.as_str(), pull.id.as_str()], ["payload_change", "drawbar_load"], "{}", said.answer);
+    assert!(pull.parameters[0].value > 2000.0, "{}", said.answer);
+    let pulled = |place: &headland_diagnose::Interval| ["r0", "r2", "r4"].contains(&place.run.as_str());
+    let (inside, all) = (pull.stretches.iter().filter(|place| pulled(place)).count(), pull.stretches.len());
+    assert!(inside >= 6 && all <= inside + 1, "{:?}", pull.stretches);
+}

@@ -192,7 +192,6 @@ fn an_engine_that_cuts_its_fuel_downhill_bends_no_slope() {
     recording.runs.extend(back.map(|run| RecordedRun { id: format!("{}_back", run.id), ..run }));
     let found = found_of_scenario(&text, &recording, &Options::default(), &registry).unwrap();
     let said = &found.diagnosis;
-    println!("{}", said.answer);
     let [slope] = &said.findings[..] else { panic!("{}", said.answer) };
     assert_eq!(slope.id, "grade", "{}", said.answer);
     let steepest = slope.parameters.iter().find(|one| one.name == "grade").unwrap().value.abs();
@@ -203,8 +202,8 @@ fn an_engine_that_cuts_its_fuel_downhill_bends_no_slope() {
 #[test]
 fn a_consumer_finds_its_edges_beside_cold_oil() {
     const HIDDEN: &str = "    effects: [
-        driveline_temperature(cold_force_n: 900, cold_viscous_n_s_m: 90, time_constant_s: 150),
-        auxiliary_power(times_s: [57, 142], powers_w: [9000]),
+        driveline_temperature(cold_force_n: 500, cold_viscous_n_s_m: 60, time_constant_s: 170),
+        auxiliary_power(times_s: [50, 110], powers_w: [9000]),
     ],
     free:";
     let registry = headland_stock::registry();
@@ -226,7 +225,7 @@ fn a_consumer_finds_its_edges_beside_cold_oil() {
     let value = |name: &str| {
         fan.parameters.iter().find(|one| one.name == name).unwrap_or_else(|| panic!("{}", said.answer)).value
     };
-    assert!((value("from_s") - 57.0).abs() < 2.0 && (value("to_s") - 142.0).abs() < 2.0, "{}", said.answer);
+    assert!((value("from_s") - 50.0).abs() < 2.0 && (value("to_s") - 110.0).abs() < 2.0, "{}", said.answer);
 }
 
 /// Consumers that some runs switch at other times than others are a course of each run, not what all runs have in common.
@@ -235,7 +234,7 @@ fn consumers_that_each_run_switches_at_times_of_its_own_are_told() {
     let registry = headland_stock::registry();
     let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
         "speed_m_s" => value + 0.02 * draws.normal(),
-        "fuel_rate_kg_s" => value + 3e-5 * draws.normal(),
+        "fuel_rate_kg_s" => value + 8e-5 * draws.normal(),
         _ => value,
     };
     let channels = ["speed_m_s", "fuel_rate_kg_s"];
@@ -255,6 +254,6 @@ fn consumers_that_each_run_switches_at_times_of_its_own_are_told() {
     let course = &found.effects[0].trace;
     let at = |time_s: f64| course.time_s().partition_point(|own| *own < time_s);
     let power_w = course.get("auxiliary_power_w").unwrap();
-    let (off, on) = (power_w[at(45.0)], power_w[at(100.0)]);
-    assert!((on - off).abs() > 10_000.0, "{off} and {on}: {}", said.answer);
+    let edges = [[56.0, 64.0], [140.0, 120.0]].map(|edge| edge.map(|time_s| power_w[at(time_s)]));
+    assert!(edges.iter().all(|[off, on]| (on - off).abs() > 10_000.0), "{edges:?}: {}", said.answer);
 }

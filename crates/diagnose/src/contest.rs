@@ -103,7 +103,7 @@ impl State<'_> {
         let best = judged.iter().find(|one| !one.jumps());
         let shown = best.and_then(|one| {
             let cause = self.cause(&one.stand.parts.last()?.trial);
-            (cause.is_function() && cause.id == SWITCHED).then(|| one.stand.score - stand.score)
+            (cause.is_function() && cause.id == SWITCHED).then_some(one.stand.score - stand.score)
         });
         // In long recordings, where the noise of a minute is not that of an hour, there is always something to jump to.
         let most = if self.system.row_count() > MANY_ROWS { f64::INFINITY } else { JUMPS };

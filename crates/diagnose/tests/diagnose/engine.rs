@@ -77,11 +77,11 @@ const APART: &str = r#"runs: [(id: "f0", with: {}), (id: "f1", with: {"cycle.0.s
 /// Work between ends of a field, without a flag.
 static LONG: LazyLock<String> = LazyLock::new(|| {
     const LEVELS_M_S: [u32; 10] = [6, 3, 8, 4, 9, 2, 7, 5, 9, 3];
+    const SPEEDS: &str = r#"runs: [(id: "f0", with: {}), (id: "f1", with: {"cycle.0.speed_m_s": 5.0}),
+        (id: "f2", with: {"cycle.4.speed_m_s": 6.5})"#;
     let level =
         |speed_m_s: u32| format!("Reach(speed_m_s: {speed_m_s}, acceleration_m_s2: 0.4), Hold(for_s: 12), ");
     let levels = format!("cycle: [{}],", LEVELS_M_S.map(level).concat());
-    const SPEEDS: &str = r#"runs: [(id: "f0", with: {}), (id: "f1", with: {"cycle.0.speed_m_s": 5.0}),
-        (id: "f2", with: {"cycle.4.speed_m_s": 6.5})"#;
     SCENARIO.replacen(STANDS, &levels, 1).replacen(RUNS, SPEEDS, 1).replacen("sd: 2000", "sd: 700", 1)
 });
 

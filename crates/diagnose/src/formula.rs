@@ -291,9 +291,7 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     let known = || case.runs.iter().all(Recorded::force_is_known);
     let acceleration = of(&|run| run.acceleration_m_s2.clone()).filter(|_| kind.is_power() && known());
     let engine_speed = channel("engine_speed_rad_s").filter(|runs| kind.is_power() && tells_more(case, runs));
-    let slope = channel("grade").map(|runs: Vec<Vec<f64>>| -> Vec<Vec<f64>> {
-        runs.iter().map(|grade| grade.iter().map(|grade| grade.atan().sin()).collect()).collect()
-    });
+    let slope = Some(case.nominal.iter().map(|said| said.sin_slope.clone()).collect());
     let offered: [Offered; 12] = [
         ("v", "m/s", of(&|run| run.motion.value.clone())),
         ("acceleration", "m/s²", acceleration),

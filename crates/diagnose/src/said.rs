@@ -19,6 +19,8 @@ pub struct Said {
     pub mass_kg: Vec<f64>,
     /// Slope's part of the specific force [m/s²].
     pub slope_m_s2: Vec<f64>,
+    /// Sine of the slope of the ground that is known; NaN where none is.
+    pub sin_slope: Vec<f64>,
     /// Force at the wheels that this model's driveline makes of a recorded torque [N]; none where the force itself was
     /// recorded.
     pub force_n: Option<Vec<f64>>,
@@ -137,6 +139,7 @@ fn say(model: &Model, run: &Recorded, kinds: &[Kind]) -> Result<Said, DiagnoseEr
         resistance_ohm,
         resistance_n,
         slope_m_s2: slope(model, &modelled, &mass_kg),
+        sin_slope: sin_slope(&modelled),
         mass_kg,
         wheel_speed_m_s: wheel_speed_m_s.unwrap_or_else(|| get("wheel_speed_m_s")),
         battery_w,
@@ -187,17 +190,21 @@ impl Said {
 
 /// The slope's part of the specific force [m/s²]; slopes that effects add are slopes to an accelerometer as well.
 fn slope(model: &Model, modelled: &Trace, mass_kg: &[f64]) -> Vec<f64> {
-    let part = |grade: &f64| model.gravity_m_s2 * grade / grade.hypot(1.0);
-    let mut slope: Vec<f64> = match modelled.get("grade") {
-        Some(grade) => grade.iter().map(part).collect(),
-        None => vec![f64::NAN; modelled.len()],
-    };
+    let mut slope: Vec<f64> = sin_slope(modelled).iter().map(|sine| model.gravity_m_s2 * sine).collect();
     for name in ["grade_n", "grade_constant_n"] {
         for ((slope, force), mass) in slope.iter_mut().zip(modelled.get(name).unwrap_or(&[])).zip(mass_kg) {
             *slope -= force / mass;
         }
     }
     slope
+}
+
+/// Sine of the slope of the ground, sample by sample.
+fn sin_slope(modelled: &Trace) -> Vec<f64> {
+    match modelled.get("grade") {
+        Some(grade) => grade.iter().map(|grade| grade / grade.hypot(1.0)).collect(),
+        None => vec![f64::NAN; modelled.len()],
+    }
 }
 
 /// The mass in inertia without what the vehicle, its driveline and effects add to it by rotating [kg].

@@ -148,6 +148,30 @@ fn a_loss_that_goes_with_drive_and_speed_is_found_as_a_share_of_the_drive() {
     }
 }
 
+/// What holds back on slopes, up and down alike, is a law of the slope that the scenario knows.
+#[test]
+fn a_drag_on_known_slopes_is_found_as_an_equation() {
+    const HIDDEN: &str = r#"expression(resistance: "a_n * (v / v0_m_s) * abs(slope)", constants: {"a_n": 50000.0, "v0_m_s": 5.0})"#;
+    const LENGTH_M: f64 = 70.0;
+    let height_m =
+        |at_m: f64| 0.6 * (std::f64::consts::TAU * at_m / LENGTH_M).sin() + 0.3 * (at_m / 9.0).cos();
+    let point = |at_m: f64| format!("(position_m: {at_m:?}, elevation_m: {:?}), ", height_m(at_m));
+    let points = (0..=20).map(|number| point(10.0 * f64::from(number))).collect::<Vec<_>>().concat();
+    let hills = format!("Profile(heading_rad: 0.0, points: [{points}])");
+    let on_hills = |effects: &str| scenario(0.069, effects, "").replacen("Flat(heading_rad: 0.0)", &hills, 1);
+    let registry = headland_stock::registry();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| {
+        if name == "speed_m_s" { value + 0.02 * draws.normal() } else { value }
+    };
+    let channels = ["speed_m_s", "position_m", "tractive_force_n", "coasting"];
+    let recording = recording_of_scenario(&on_hills(HIDDEN), &registry, &channels, (17, &noisy));
+    let found = found_of_scenario(&on_hills(""), &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    let law = said.findings.iter().find(|finding| finding.id == "unlisted");
+    let law = law.unwrap_or_else(|| panic!("{}", said.answer));
+    assert!(law.equation.contains("slope"), "{}: {}", law.equation, said.answer);
+}
+
 /// The same tractor with an engine instead of a battery.
 fn with_an_engine(effects: &str) -> String {
     const ENGINE: &str = r#"EngineCvt(

@@ -47,21 +47,21 @@ fn goes_on_to_burn(measured: &[f64], modelled: &[f64]) -> bool {
 /// Leaves samples out at which an engine cut its fuel in a place of a shared path where one burnt some as well, as those that come
 /// from the other side do. Where one run alone drove a path, nothing else tells that it went downhill.
 pub fn leave_out(case: &Case, usable: &mut [Vec<bool>]) {
-    let burnt: Vec<Option<Vec<Burnt>>> = case.runs.iter().map(burnt).collect();
+    let burnt: Vec<Vec<Burnt>> = case.runs.iter().map(|run| burnt(run).unwrap_or_default()).collect();
     #[expect(clippy::cast_possible_truncation, reason = "a place of some kilometres")]
     let place =
         |run: &Recorded, sample: usize| (run.path, (run.position_m[sample] / ONE_PLACE_M).round() as i64);
-    let is_shared = |run: &Recorded| case.runs.iter().filter(|other| other.path == run.path).count() > 1;
+    let is_shared = |run: &&Recorded| case.runs.iter().filter(|other| other.path == run.path).count() > 1;
     let samples_of = |wanted: Burnt| {
-        let runs = case.runs.iter().zip(&burnt).filter(|(run, _)| is_shared(run));
-        runs.map(|(run, burnt)| (run.number, (run, burnt))).flat_map(move |(number, (run, burnt))| {
-            let own = burnt.iter().flatten().enumerate().filter(move |(_, burnt)| **burnt == wanted);
-            own.map(move |(sample, _)| (number, sample, run))
-        })
+        let of_run = |run: &Recorded| {
+            let own = burnt[run.number].iter().enumerate().filter(|(_, burnt)| **burnt == wanted);
+            own.map(|(sample, _)| (run.number, sample, place(run, sample))).collect::<Vec<_>>()
+        };
+        case.runs.iter().filter(is_shared).flat_map(of_run).collect::<Vec<_>>()
     };
-    let told: BTreeSet<_> = samples_of(Burnt::Some).map(|(_, sample, run)| place(run, sample)).collect();
-    for (number, sample, run) in samples_of(Burnt::Nothing) {
-        if told.contains(&place(run, sample)) {
+    let told: BTreeSet<_> = samples_of(Burnt::Some).into_iter().map(|(_, _, place)| place).collect();
+    for (number, sample, place) in samples_of(Burnt::Nothing) {
+        if told.contains(&place) {
             usable[number][sample] = false;
         }
     }

@@ -12,7 +12,9 @@ use headland_recording::Recording;
 use headland_scenario::Scenario;
 use headland_sim::simulate;
 use headland_trace::{Origin, Trace};
-use setting::{found, found_of_scenario, named, recorded, recording_of_scenario, scenario};
+use setting::{
+    found, found_of_scenario, named, recorded, recorded_of_scenario, recording_of_scenario, scenario,
+};
 use std::path::Path;
 
 /// A wave along the path, the same whichever way it is driven: no listed cause has one.
@@ -160,11 +162,7 @@ fn a_drag_on_known_slopes_is_found_as_an_equation() {
     let hills = format!("Profile(heading_rad: 0.0, points: [{points}])");
     let on_hills = |effects: &str| scenario(0.069, effects, "").replacen("Flat(heading_rad: 0.0)", &hills, 1);
     let registry = headland_stock::registry();
-    let noisy = |name: &str, value: f64, draws: &mut Draws| {
-        if name == "speed_m_s" { value + 0.02 * draws.normal() } else { value }
-    };
-    let channels = ["speed_m_s", "position_m", "tractive_force_n", "coasting"];
-    let recording = recording_of_scenario(&on_hills(HIDDEN), &registry, &channels, (17, &noisy));
+    let recording = recorded_of_scenario(&on_hills(HIDDEN), &registry);
     let found = found_of_scenario(&on_hills(""), &recording, &Options::default(), &registry).unwrap();
     let said = &found.diagnosis;
     let law = said.findings.iter().find(|finding| finding.id == "unlisted");

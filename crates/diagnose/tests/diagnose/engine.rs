@@ -207,7 +207,6 @@ fn a_consumer_finds_its_edges_beside_cold_oil() {
     ],
     free:";
     let registry = headland_stock::registry();
-    let text = LONG.clone();
     let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
         "speed_m_s" => value + 0.02 * draws.normal(),
         "engine_torque_n_m" => value + 30.0 * draws.normal(),
@@ -216,8 +215,8 @@ fn a_consumer_finds_its_edges_beside_cold_oil() {
     };
     let channels = ["speed_m_s", "engine_torque_n_m", "engine_speed_rad_s"];
     let recording =
-        recording_of_scenario(&text.replacen("    free:", HIDDEN, 1), &registry, &channels, (61, &noisy));
-    let found = found_of_scenario(&text, &recording, &Options::default(), &registry).unwrap();
+        recording_of_scenario(&LONG.replacen("    free:", HIDDEN, 1), &registry, &channels, (61, &noisy));
+    let found = found_of_scenario(&LONG, &recording, &Options::default(), &registry).unwrap();
     let said = &found.diagnosis;
     let ids: Vec<&str> = said.findings.iter().map(|finding| finding.id.as_str()).collect();
     assert!(ids.contains(&"auxiliary_power") && named(&found, "driveline_temperature"), "{}", said.answer);

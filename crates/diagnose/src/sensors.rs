@@ -245,7 +245,11 @@ fn moved(runs: &[Recorded], id: &str, value: f64, force: bool) -> Result<Vec<Rec
             for sample in changed.force_n.iter_mut().flatten() {
                 *sample /= 1.0 + value;
             }
-            for name in ["tractive_force_n", "motor_torque_n_m", "engine_torque_n_m"] {
+            // A force that was measured at the wheels says nothing of the sensor of a torque beside it.
+            let measured = run.measured.trace.get("tractive_force_n").is_some();
+            let names: &[&str] =
+                if measured { &["tractive_force_n"] } else { &["motor_torque_n_m", "engine_torque_n_m"] };
+            for name in names {
                 let trace = &changed.measured.trace;
                 if let Some(samples) = trace.get(name) {
                     let samples = samples.iter().map(|sample| sample / (1.0 + value)).collect();

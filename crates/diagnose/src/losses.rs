@@ -198,11 +198,12 @@ pub fn torque_errors(case: &Case, system: &System) -> Vec<Small> {
     errors.into_iter().filter(|small| small.sd > 0.0).collect()
 }
 
-/// What a measured force asks of an engine that the wheels drive: no scenario knows what a transmission passes on that way, and where
-/// nothing drives the noise of the force makes both signs, of which a loss makes more power than there is.
+/// What a measured force asks of an engine that the wheels drive: no scenario knows what a transmission passes on that way, if any,
+/// nor what its torque is said to be then; and where nothing drives, the noise of the force makes both signs, of which a loss makes
+/// more power than there is.
 pub fn overrun_powers(case: &Case, system: &System) -> Vec<Small> {
-    /// What is lost of the power going out and once more coming back, as share of it.
-    const SHARE: f64 = 0.2;
+    /// Of the power at the wheels: nothing of it may come.
+    const SHARE: f64 = 1.0;
     /// Power of fuel over power of the shaft.
     const FUEL: f64 = 2.5;
     let measured = |run: &Recorded| run.measured.trace.get("tractive_force_n").is_some();

@@ -9,7 +9,7 @@ use crate::in_doubt;
 use crate::mirror::is_whole;
 use crate::prove::{Errors, Proof, prove, told_by};
 use crate::refine::{Cured, Refined, refine, spells};
-use crate::search::{Found, Rival};
+use crate::search::{Found, Rival, worth};
 use crate::state::{Part, State};
 use crate::trial::Pool;
 use crate::words::each_once;
@@ -193,8 +193,8 @@ pub fn proven(
     Ok(best)
 }
 
-/// What was proven; where that is nothing, since a law that nobody listed stood in the place of listed causes and was taken back,
-/// those causes, if they hold.
+/// What was proven; where a law that nobody listed stood in the place of listed causes and was taken back, what is proven of those
+/// causes, if it holds.
 pub fn or_listed(
     case: &Case,
     system: &System,
@@ -204,13 +204,23 @@ pub fn or_listed(
     faults: &[Fault],
 ) -> Result<Proven, DiagnoseError> {
     let is_law = |cause: &usize| case.causes[*cause].law.is_some();
-    let displaced = proven.found.unproven.iter().any(is_law) && !listed.stand.parts.is_empty();
-    if !proven.refined.causes.is_empty() || !displaced {
+    let stayed = |part: &Part| proven.found.stand.parts.iter().any(|own| own.trial.cause == part.trial.cause);
+    let displaced = proven.found.unproven.iter().any(is_law) && !listed.stand.parts.iter().all(stayed);
+    if !displaced {
         return Ok(proven);
     }
     let other = self::proven(case, system, pool, listed, events, faults)?;
-    let holds = !other.refined.causes.is_empty() && other.withheld.is_none() && !other.is_worse_than(&proven);
-    Ok(if holds { other } else { proven })
+    if other.refined.causes.is_empty() || other.withheld.is_some() {
+        return Ok(proven);
+    }
+    // One signal tells of both.
+    let by = Some(told_by(system, &other.refined));
+    let held_out = |one: &Proven| prove(case, system, &one.refined, by).map(|proof| proof.held_out);
+    let worse = held_out(&other)?
+        .zip(held_out(&proven)?)
+        .is_some_and(|(own, others)| own.after > (1.0 + RISES) * others.after);
+    let poorer = !proven.refined.causes.is_empty() && worth(&other.found.stand) < worth(&proven.found.stand);
+    Ok(if worse || poorer { proven } else { other })
 }
 
 /// What was found without one law that nobody listed, without one map of a path, or without one listed cause that is hardly

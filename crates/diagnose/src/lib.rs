@@ -83,6 +83,7 @@ mod tails;
 mod thinned;
 mod together;
 mod trial;
+mod undriven;
 mod unlisted;
 mod unmoved;
 mod voltage;

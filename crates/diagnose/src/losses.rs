@@ -198,35 +198,8 @@ pub fn torque_errors(case: &Case, system: &System) -> Vec<Small> {
     errors.into_iter().filter(|small| small.sd > 0.0).collect()
 }
 
-/// What a measured force asks of an engine that the wheels drive: no scenario knows what a transmission passes on that way, if any,
-/// nor what its torque is said to be then; and where nothing drives, the noise of the force makes both signs, of which a loss makes
-/// more power than there is.
-pub fn overrun_powers(case: &Case, system: &System) -> Vec<Small> {
-    /// Of the power at the wheels: nothing of it may come.
-    const SHARE: f64 = 1.0;
-    /// Power of fuel over power of the shaft.
-    const FUEL: f64 = 2.5;
-    let measured = |run: &Recorded| run.measured.trace.get("tractive_force_n").is_some();
-    if !case.runs.iter().any(measured) {
-        return Vec::new();
-    }
-    let of = |(kind, id, sd): (Kind, &'static str, f64)| {
-        let of_run = |run: &Recorded| {
-            let back = power(run).into_iter().map(|power| (-power).max(0.0));
-            if measured(run) { back.collect() } else { Vec::new() }
-        };
-        let column = system.column(|own| {
-            let samples = |run: &Recorded| if own == kind { of_run(run) } else { Vec::new() };
-            case.runs.iter().map(samples).collect()
-        });
-        system.has(kind).then_some(Small { id, column, sd })
-    };
-    let kinds = [(Kind::Shaft, "overrun_shaft", SHARE), (Kind::Fuel, "overrun_fuel", FUEL * SHARE)];
-    kinds.into_iter().filter_map(of).filter(any_value).collect()
-}
-
 /// Whether a fault does anything at all.
-fn any_value(small: &Small) -> bool {
+pub fn any_value(small: &Small) -> bool {
     small.column.iter().any(|chunk| chunk.iter().any(|value| *value != 0.0))
 }
 

@@ -5,12 +5,13 @@ use crate::balance::{Kind, System, change};
 use crate::catalogue::{Cause, Form};
 use crate::gram::Column;
 use crate::look::MANY_ROWS;
-use crate::losses::{bent_engine, overrun_powers, slow_powers, small_losses, torque_errors};
+use crate::losses::{bent_engine, slow_powers, small_losses, torque_errors};
 use crate::recorded::Recorded;
 use crate::remembered::Driven;
 use crate::said::Said;
 use crate::sensors::{fault, small_faults};
 use crate::slowed::with_speed;
+use crate::undriven::undriven_powers;
 use crate::windowed::in_window;
 use crate::{Case, DiagnoseError};
 
@@ -86,7 +87,7 @@ pub fn nuisance(case: &Case, system: &System) -> Result<Pool, DiagnoseError> {
     let small = small_faults(case, system)?.into_iter().chain(small_losses(case, system));
     let bent = bent_engine(case, system, &pool.columns);
     let engine = slow_powers(case, system).into_iter().chain(torque_errors(case, system));
-    for small in small.chain(engine).chain(overrun_powers(case, system)).chain(bent) {
+    for small in small.chain(engine).chain(undriven_powers(case, system)).chain(bent) {
         pool.small.push((small.id, pool.columns.len()));
         pool.columns.push(small.column);
         pool.sd.push(small.sd);

@@ -18,8 +18,8 @@ const BESIDE: usize = 2;
 pub fn undriven_powers(case: &Case, system: &System) -> Vec<Small> {
     /// Of the power at the wheels: nothing of it may come.
     const OVERRUN: f64 = 1.0;
-    /// Of speed times noise.
-    const NOISE: f64 = 0.5;
+    /// Of speed times noise: what an efficiency of nine tenths makes of either half of it.
+    const NOISE: f64 = 0.1;
     /// Power of the fuel over that of the shaft.
     const FUEL: f64 = 2.5;
     let all = |of: &dyn Fn(&Recorded) -> Vec<f64>| case.runs.iter().map(of).collect::<Vec<_>>();
@@ -43,7 +43,14 @@ fn overrun_w(run: &Recorded) -> Vec<f64> {
     let Some(force_n) = run.force_n.as_ref().filter(|_| run.measured.trace.get(FORCE).is_some()) else {
         return Vec::new();
     };
-    force_n.iter().zip(&run.motion.value).map(|(force, speed)| (-force * speed).max(0.0)).collect()
+    let of = |(sample, speed): (usize, &f64)| (-around_n(force_n, sample) * speed).max(0.0);
+    run.motion.value.iter().enumerate().map(of).collect()
+}
+
+/// The mean of a force about a sample [N].
+fn around_n(force_n: &[f64], sample: usize) -> f64 {
+    let around = &force_n[sample.saturating_sub(BESIDE)..=(sample + BESIDE).min(force_n.len() - 1)];
+    around.iter().sum::<f64>() / around.len() as f64
 }
 
 /// Speed times the noise of the force, where that force is hardly more than its noise [W].
@@ -57,10 +64,8 @@ fn noise_w(run: &Recorded, declared_n: Option<f64>) -> Vec<f64> {
     if noise_n <= 0.0 {
         return Vec::new();
     }
-    let last = force_n.len() - 1;
     let of = |(sample, speed): (usize, &f64)| {
-        let around = &force_n[sample.saturating_sub(BESIDE)..=(sample + BESIDE).min(last)];
-        let ratio = around.iter().sum::<f64>() / around.len() as f64 / noise_n;
+        let ratio = around_n(force_n, sample) / noise_n;
         let bump = speed * noise_n * (-0.5 * ratio * ratio).exp();
         if bump.is_finite() { bump } else { 0.0 }
     };

@@ -296,10 +296,12 @@ impl State<'_> {
         if self.simpler(stand, &found.stand) && found.stand.parts.iter().all(|part| part.spread.is_none()) {
             return PLAINER;
         }
-        // Nor has a consumer that is switched with time.
+        // Nor has a consumer that is switched with time. And what shows where the law does nothing, as the resistance of a battery
+        // does in its voltage, leaves nothing there that a formula could bend to.
         let any = |part: &Part| {
             let cause = self.cause(&part.trial);
-            cause.by_run || cause.form == Form::OverTime && cause.balances.iter().all(|kind| kind.is_power())
+            let over_time = cause.form == Form::OverTime && cause.balances.iter().all(|kind| kind.is_power());
+            cause.by_run || over_time || self.is_elsewhere(part, stand, &found.stand)
         };
         let (shapeless, shaped): (Vec<Part>, Vec<Part>) = found.stand.parts.iter().cloned().partition(any);
         let alone = if shapeless.is_empty() { None } else { self.settle(&shapeless, &found.stand.noises) };
@@ -314,6 +316,20 @@ impl State<'_> {
         };
         let share = if simpler { SIMPLER } else { BETTER };
         MARGIN + share * fewer * brought.max(0.0)
+    }
+
+    /// Whether a part of what was found does nothing to the balances that the laws of a set do something to.
+    fn is_elsewhere(&self, part: &Part, set: &Stand, found: &Stand) -> bool {
+        /// Mean square over that of the noise.
+        const NOTHING: f64 = 1e-3;
+        let works = |stand: &Stand, part: &Part| -> Vec<bool> {
+            let squares = self.system.mean_squares(&stand.effect(self, part), self.fit);
+            let noises = found.noises.each.iter().map(|noise| noise.sd().powi(2));
+            squares.into_iter().zip(noises).map(|(square, noise)| square > NOTHING * noise).collect()
+        };
+        let own = works(found, part);
+        let mut laws = set.parts.iter().filter(|part| self.cause(&part.trial).law.is_some());
+        laws.all(|law| !works(set, law).into_iter().zip(&own).any(|(law, own)| law && *own))
     }
 
     /// Whether a set leaves the free parameters where they are known to be, or at least where another has them: a law that

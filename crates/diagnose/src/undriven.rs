@@ -55,8 +55,8 @@ fn around_n(force_n: &[f64], sample: usize) -> f64 {
 
 /// Speed times the noise of the force, where that force is hardly more than its noise [W].
 ///
-/// The mean of what is left of a normal variable about m on one side of nought is σ φ(m/σ) + m Φ(m/σ): beside what the force itself
-/// makes it is a bump as wide as the noise, whatever is made of either side.
+/// The mean of what a normal variable about m has on one side of nought is σ φ(m/σ) + m Φ(m/σ). Beside what m itself has there it is
+/// highest at nought and gone at twice the noise, on either side; a bell draws it.
 fn noise_w(run: &Recorded, declared_n: Option<f64>) -> Vec<f64> {
     let trace = &run.measured.trace;
     let (Some(measured), Some(force_n)) = (trace.get(FORCE), &run.force_n) else { return Vec::new() };

@@ -225,6 +225,29 @@ fn a_consumer_by_a_law_of_speed_is_found_in_the_fuel_and_in_watts() {
     assert!((told / truth - 1.0).abs() < 0.15, "{told} W, {truth} W: {}", said.answer);
 }
 
+/// A fan that sets in at a speed, in a car whose battery has another resistance: what that brings in the voltage is no reason to
+/// miss what is left of the power.
+#[test]
+fn a_consumer_above_a_speed_is_found_beside_another_resistance_of_the_battery() {
+    const HIDDEN: &str = r#"battery_resistance(resistance_ohm: 0.03), expression(
+        auxiliary_power: "p_w * tanh(max(v - v0_m_s, 0) / v1_m_s)",
+        constants: {"p_w": 2500.0, "v0_m_s": 4.0, "v1_m_s": 1.0})"#;
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "motor_torque_n_m" => value + 0.5 * draws.normal(),
+        "battery_voltage_v" | "battery_current_a" => value + 0.3 * draws.normal(),
+        _ => value,
+    };
+    let channels = ["speed_m_s", "position_m", "motor_torque_n_m", "battery_voltage_v", "battery_current_a"];
+    let registry = headland_stock::registry();
+    let recording = recording_of_scenario(&scenario(0.069, HIDDEN, ""), &registry, &channels, (8, &noisy));
+    let found = found(&recording, &Options::default()).unwrap();
+    let said = &found.diagnosis;
+    assert!(named(&found, "battery_resistance") && named(&found, "unlisted"), "{}", said.answer);
+    let law = said.findings.iter().find(|finding| finding.id == "unlisted").unwrap();
+    assert_eq!((law.balance, law.depends_on.clone()), (Kind::Battery, vec!["speed_m_s".to_owned()]));
+}
+
 /// An engine that was driven just before starts warm: two of four runs start cold, and only fuel tells of it.
 #[test]
 fn an_engine_that_starts_cold_in_some_runs_is_found_with_its_friction() {

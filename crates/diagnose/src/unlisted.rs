@@ -32,6 +32,8 @@ const EVERYWHERE: f64 = 0.04;
 const SHARED: f64 = 1.2;
 /// A consumer that may take any course is not told by a formula beyond so many rows.
 const LONG_ROWS: usize = 8_000;
+/// Causes that a law of so many terms less takes the place of.
+const PATCHES: usize = 2;
 /// Causes that hide each other bring beside one another up to so many times what the best of them brings alone.
 const HARDLY: f64 = 3.0;
 
@@ -121,6 +123,12 @@ fn candidates(
     let functions = listed.iter().any(|part| part.spread.is_some());
     let rows = system.row_count_of(sought.kind);
     let mut starts = if functions && rows > MANY_ROWS { Vec::new() } else { vec![Vec::new()] };
+    // What patches one law beside maps would hide it, and the maps stay.
+    let maps: Vec<Part> = listed.iter().filter(|part| part.spread.is_some()).cloned().collect();
+    let patched = listed.len() >= maps.len() + PATCHES;
+    if patched && !maps.is_empty() && rows <= MANY_ROWS {
+        starts.push(maps);
+    }
     if !listed.is_empty() {
         starts.push(listed);
     }
@@ -291,23 +299,23 @@ impl State<'_> {
     /// How much better than what was found a set with a law has to be. What differs from run to run has no shape that would
     /// be known from elsewhere, and three causes that one term says better patch each other.
     fn margin(&self, found: &Found, stand: &Stand) -> f64 {
-        /// Causes that a law of so many terms less takes the place of.
-        const PATCHES: usize = 2;
         if self.simpler(stand, &found.stand) && found.stand.parts.iter().all(|part| part.spread.is_none()) {
             return PLAINER;
         }
         // Nor has a consumer that is switched with time. And what shows where the law does nothing, as the resistance of a battery
-        // does in its voltage, leaves nothing there that a formula could bend to.
+        // does in its voltage, leaves nothing there that a formula could bend to; nor does a map that stays where a law is simpler.
+        let simpler = self.simpler(stand, &found.stand);
+        let stays = |part: &Part| stand.parts.iter().any(|own| own.trial.columns == part.trial.columns);
         let any = |part: &Part| {
             let cause = self.cause(&part.trial);
             let over_time = cause.form == Form::OverTime && cause.balances.iter().all(|kind| kind.is_power());
-            cause.by_run || over_time || self.is_elsewhere(part, stand, &found.stand)
+            let kept = simpler && part.spread.is_some() && stays(part);
+            cause.by_run || over_time || kept || self.is_elsewhere(part, stand, &found.stand)
         };
         let (shapeless, shaped): (Vec<Part>, Vec<Part>) = found.stand.parts.iter().cloned().partition(any);
         let alone = if shapeless.is_empty() { None } else { self.settle(&shapeless, &found.stand.noises) };
         let brought = worth(&found.stand) - worth(alone.as_ref().unwrap_or(&found.first));
         let shaped = shaped.len();
-        let simpler = self.simpler(stand, &found.stand);
         let fewer = match (shaped, found.stand.parts.len()) {
             (0, 0) => 0.0,
             (0, _) => 1.0,

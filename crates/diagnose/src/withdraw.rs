@@ -224,7 +224,7 @@ pub fn or_listed(
 }
 
 /// What was found without one law that nobody listed, without one map of a path, or without one listed cause that is hardly
-/// beyond chance, where runs held out are no better with it than without it or than with the nominal scenario, in the balance
+/// beyond chance or may as well be none, where runs held out are no better with it than without it or than with the nominal scenario, in the balance
 /// that it belongs to: formulas and maps are free to follow the runs that they were made of, and of many causes one fits the
 /// last bends of a model a little.
 fn without_idle(
@@ -242,6 +242,7 @@ fn without_idle(
         (Some(_), _) => RISES,
         (None, Form::OverPosition) => 0.0,
         (None, _) if is_faint(best, place) => BORNE_OUT,
+        (None, _) if best.cured(place).is_some_and(Cured::may_be_none) => RISES,
         (None, _) => return Ok(None),
     };
     // What takes power at a shaft takes fuel for it: where it shows most is where it is told.

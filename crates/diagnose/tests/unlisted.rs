@@ -232,6 +232,21 @@ fn a_consumer_above_a_speed_is_found_beside_another_resistance_of_the_battery() 
     const HIDDEN: &str = r#"battery_resistance(resistance_ohm: 0.03), expression(
         auxiliary_power: "p_w * tanh(max(v - v0_m_s, 0) / v1_m_s)",
         constants: {"p_w": 2500.0, "v0_m_s": 4.0, "v1_m_s": 1.0})"#;
+    const LEVELS_M_S: [u32; 10] = [6, 3, 8, 4, 9, 2, 7, 5, 9, 3];
+    /// Drives at many speeds, those that come back at others.
+    fn drives(hidden: &str) -> String {
+        let level = |speed_m_s: u32| {
+            format!("Reach(speed_m_s: {speed_m_s}, acceleration_m_s2: 0.4), Hold(for_s: 8), ")
+        };
+        let text = scenario(0.069, hidden, "");
+        let (before, rest) = text.split_once("cycle: [").unwrap();
+        let (_, after) = rest.split_once("effects").unwrap();
+        let back = r#""180 deg""#;
+        let others =
+            r#""180 deg", "cycle.0.speed_m_s": 4.5, "cycle.4.speed_m_s": 3.5, "cycle.8.speed_m_s": 5.5"#;
+        let cycle = LEVELS_M_S.map(level).concat();
+        format!("{before}cycle: [{cycle}],\n    effects{after}").replace(back, others)
+    }
     let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
         "speed_m_s" => value + 0.02 * draws.normal(),
         "motor_torque_n_m" => value + 0.5 * draws.normal(),
@@ -240,8 +255,8 @@ fn a_consumer_above_a_speed_is_found_beside_another_resistance_of_the_battery() 
     };
     let channels = ["speed_m_s", "position_m", "motor_torque_n_m", "battery_voltage_v", "battery_current_a"];
     let registry = headland_stock::registry();
-    let recording = recording_of_scenario(&scenario(0.069, HIDDEN, ""), &registry, &channels, (8, &noisy));
-    let found = found(&recording, &Options::default()).unwrap();
+    let recording = recording_of_scenario(&drives(HIDDEN), &registry, &channels, (8, &noisy));
+    let found = found_of_scenario(&drives(""), &recording, &Options::default(), &registry).unwrap();
     let said = &found.diagnosis;
     assert!(named(&found, "battery_resistance") && named(&found, "unlisted"), "{}", said.answer);
     let law = said.findings.iter().find(|finding| finding.id == "unlisted").unwrap();

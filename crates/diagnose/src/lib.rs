@@ -83,7 +83,6 @@ mod tails;
 mod thinned;
 mod together;
 mod trial;
-mod undriven;
 mod unlisted;
 mod unmoved;
 mod voltage;

@@ -80,7 +80,8 @@ pub fn slow_powers(case: &Case, system: &System) -> Vec<Small> {
         });
         Small { id, column, sd: SHARE }
     };
-    LATE.into_iter().map(of).filter(any_value).collect()
+    let any = |column: &Column| column.iter().any(|chunk| chunk.iter().any(|value| *value != 0.0));
+    LATE.into_iter().map(of).filter(|small| any(&small.column)).collect()
 }
 
 /// What a line between fuel and work leaves of an engine whose noise grows with its power: fuel that bends with power and with
@@ -196,11 +197,6 @@ pub fn torque_errors(case: &Case, system: &System) -> Vec<Small> {
         |run: usize| case.runs[run].measured.trace.get("engine_speed_rad_s").unwrap_or_default().to_vec();
     let errors = vec![of("torque_scale", &power, SCALE), of("torque_offset", &speed, OFFSET * greatest)];
     errors.into_iter().filter(|small| small.sd > 0.0).collect()
-}
-
-/// Whether a fault does anything at all.
-pub fn any_value(small: &Small) -> bool {
-    small.column.iter().any(|chunk| chunk.iter().any(|value| *value != 0.0))
 }
 
 /// The modelled power of a balance that may come late: of an engine, or of what is made of the motion alone [W].

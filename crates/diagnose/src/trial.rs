@@ -11,7 +11,6 @@ use crate::remembered::Driven;
 use crate::said::Said;
 use crate::sensors::{fault, small_faults};
 use crate::slowed::with_speed;
-use crate::undriven::undriven_powers;
 use crate::windowed::in_window;
 use crate::{Case, DiagnoseError};
 
@@ -86,8 +85,7 @@ pub fn nuisance(case: &Case, system: &System) -> Result<Pool, DiagnoseError> {
     }
     let small = small_faults(case, system)?.into_iter().chain(small_losses(case, system));
     let bent = bent_engine(case, system, &pool.columns);
-    let engine = slow_powers(case, system).into_iter().chain(torque_errors(case, system));
-    for small in small.chain(engine).chain(undriven_powers(case, system)).chain(bent) {
+    for small in small.chain(slow_powers(case, system)).chain(torque_errors(case, system)).chain(bent) {
         pool.small.push((small.id, pool.columns.len()));
         pool.columns.push(small.column);
         pool.sd.push(small.sd);

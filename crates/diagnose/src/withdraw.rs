@@ -105,9 +105,21 @@ impl Proven {
         let state = State { case, system, pool, fit: &case.fit };
         let parts: Vec<Part> =
             self.found.stand.parts.iter().filter(|part| part.spread.is_some()).cloned().collect();
-        let held_out = case.fit.iter().zip(&case.bears).map(|(fit, bears)| !fit && *bears);
-        held_out.zip(state.shares_known(&parts)).map(|(held_out, known)| held_out && known > KNOWN).collect()
+        held_out(case)
+            .zip(state.shares_known(&parts))
+            .map(|(held_out, known)| held_out && known > KNOWN)
+            .collect()
     }
+}
+
+/// Which runs are held out and may forbid a claim.
+fn held_out(case: &Case) -> impl Iterator<Item = bool> {
+    case.fit.iter().zip(&case.bears).map(|(fit, bears)| !fit && *bears)
+}
+
+/// Whether errors of the same runs are larger with one set than with another.
+fn is_worse(with: &Errors, without: &Errors) -> bool {
+    with.after > (1.0 + RISES) * without.after
 }
 
 /// Error with what was found over that of the nominal scenario.
@@ -215,18 +227,16 @@ pub fn or_listed(
     }
     // One signal tells of both.
     let by = Some(told_by(system, &other.refined));
-    let held_out = |one: &Proven| prove(case, system, &one.refined, by).map(|proof| proof.held_out);
-    let worse = held_out(&other)?
-        .zip(held_out(&proven)?)
-        .is_some_and(|(own, others)| own.after > (1.0 + RISES) * others.after);
+    let errors = |one: &Proven| prove(case, system, &one.refined, by).map(|proof| proof.held_out);
+    let worse = errors(&other)?.zip(errors(&proven)?).is_some_and(|(own, others)| is_worse(&own, &others));
     let poorer = !proven.refined.causes.is_empty() && worth(&other.found.stand) < worth(&proven.found.stand);
     Ok(if worse || poorer { proven } else { other })
 }
 
 /// What was found without one law that nobody listed, without one map of a path, or without one listed cause that is hardly
-/// beyond chance or may as well be none, where runs held out are no better with it than without it or than with the nominal scenario, in the balance
-/// that it belongs to: formulas and maps are free to follow the runs that they were made of, and of many causes one fits the
-/// last bends of a model a little.
+/// beyond chance or may as well be none, where runs held out are no better with it than without it or than with the nominal
+/// scenario, in the balance that it belongs to: formulas and maps are free to follow the runs that they were made of, and of many
+/// causes one fits the last bends of a model a little. A law beside maps that know none of those runs may only not make them worse.
 fn without_idle(
     case: &Case,
     system: &System,
@@ -257,15 +267,14 @@ fn without_idle(
     // make it worse.
     let alone = cause.law.is_some() && !telling.contains(&true);
     if alone {
-        telling = case.fit.iter().zip(&case.bears).map(|(fit, bears)| !fit && *bears).collect();
+        telling = held_out(case).collect();
     }
-    let held_out = |one: &Proven| {
+    let errors = |one: &Proven| {
         prove(case, system, &one.refined, Some(kind)).map(|proof| Errors::over(&proof.each, &telling))
     };
-    let (with, without) = (held_out(best)?, held_out(&lesser)?);
+    let (with, without) = (errors(best)?, errors(&lesser)?);
     if alone {
-        let worse =
-            with.zip(without).is_some_and(|(with, without)| with.after > (1.0 + RISES) * without.after);
+        let worse = with.zip(without).is_some_and(|(with, without)| is_worse(&with, &without));
         return Ok(worse.then_some(lesser));
     }
     let faint = is_faint(best, place);

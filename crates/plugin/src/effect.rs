@@ -29,10 +29,19 @@ pub struct Action {
     pub upstream_n: f64,
     /// Slip for each newton at the wheels [1/N]: they turn as if the speed were v / (1 − s).
     pub slip_per_n: f64,
+    /// What is added to that for each newton at the wheels, driving or braking [1/N²]: slip that grows faster than the pull.
+    pub slip_per_n2: f64,
     /// Friction torque at the engine, beside its own [N m].
     pub engine_friction_n_m: f64,
     /// Resistance of the battery, beside its own [Ω].
     pub battery_resistance_ohm: f64,
+}
+
+impl Action {
+    /// Slip for each newton at the wheels, where so many act there [1/N].
+    pub fn slip_per_n_at(&self, force_n: f64) -> f64 {
+        self.slip_per_n + self.slip_per_n2 * force_n.abs()
+    }
 }
 
 /// One piece of physics.

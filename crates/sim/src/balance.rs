@@ -112,7 +112,7 @@ impl Instant {
         let upstream_n = action.upstream_n + action.upstream_share * self.transmitted_n.abs();
         action.auxiliary_power_w
             + action.shaft_power_w
-            + action.slip_per_n * self.slip_w_n
+            + action.slip_per_n_at(self.delivery.force_n) * self.slip_w_n
             + upstream_n * self.demand.speed_m_s.abs()
     }
 }
@@ -474,6 +474,7 @@ impl Model {
             sums.upstream_share += action.upstream_share;
             sums.upstream_n += action.upstream_n;
             sums.slip_per_n += action.slip_per_n;
+            sums.slip_per_n2 += action.slip_per_n2;
             sums.engine_friction_n_m += action.engine_friction_n_m;
             sums.battery_resistance_ohm += action.battery_resistance_ohm;
         }
@@ -514,11 +515,33 @@ pub(crate) struct Sums {
     pub upstream_share: f64,
     pub upstream_n: f64,
     pub slip_per_n: f64,
+    pub slip_per_n2: f64,
     pub engine_friction_n_m: f64,
     pub battery_resistance_ohm: f64,
     pub drawbar_n: f64,
     pub pto_power_w: f64,
     pub hydraulic_power_w: f64,
+}
+
+impl Sums {
+    /// Slip for each newton at the wheels, where so many act there [1/N].
+    fn slip_per_n_at(&self, force_n: f64) -> f64 {
+        self.slip_per_n + self.slip_per_n2 * force_n.abs()
+    }
+
+    /// Whether effects make the wheels slip.
+    pub fn slips(&self) -> bool {
+        self.slip_per_n != 0.0 || self.slip_per_n2 != 0.0
+    }
+
+    /// Speed of wheels that effects make slip [m/s], which would roll at another in this direction.
+    pub fn turning_m_s(&self, rolling_m_s: f64, force_n: f64, direction: f64) -> f64 {
+        if !self.slips() {
+            return rolling_m_s;
+        }
+        let slip = self.slip_per_n_at(force_n) * force_n * direction;
+        rolling_m_s / (1.0 - slip.clamp(-MOST_SLIP, MOST_SLIP))
+    }
 }
 
 /// Puts the instant together, and writes the power of every account [W].
@@ -551,10 +574,10 @@ pub(crate) fn tell(
         hydraulic_power_w: sums.hydraulic_power_w,
         transmitted_n: sums.transmitted_n(delivery.force_n, asked.way()),
         wheel_speed_m_s: if rolled.locked { 0.0 } else { demand.speed_m_s },
-        slip_w_n: if sums.slip_per_n == 0.0 {
-            0.0
-        } else {
-            delivery.force_n * (demand.speed_m_s - rolling_m_s) / sums.slip_per_n
+        slip_w_n: {
+            let per_n = sums.slip_per_n_at(delivery.force_n);
+            let slipping_w = delivery.force_n * (demand.speed_m_s - rolling_m_s);
+            if per_n == 0.0 { 0.0 } else { slipping_w / per_n }
         },
         slip: rolled.slip,
         slip_w: delivery.force_n * rolling_m_s - rolled.traction_n * situation.speed_m_s,

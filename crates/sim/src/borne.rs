@@ -4,7 +4,7 @@
 //! over the step too. Work is what forces do along the ways that the carriage tells.
 
 use crate::Model;
-use crate::balance::{Asked, Command, Given, Instant, MOST_SLIP, Point, Rolled, Scratch, Sums, tell};
+use crate::balance::{Asked, Command, Given, Instant, Point, Rolled, Scratch, Sums, tell};
 use crate::carriage::{Carriage, Motion, Push, Stepped};
 use crate::ledger::{AIR, BRAKES, DRAWBAR, MASS_CHANGE, SLOPE, SOIL, Slots};
 use crate::model::Layout;
@@ -263,8 +263,7 @@ impl Model {
             self.govern(&situation, asked.command, asked.given, asked.layout, asked.states, rates);
         // About a rest the wheels rock; the driveline is told that they stand.
         let rolling_m_s = way * (way * motion.driven_m_s).max(0.0);
-        let slip = (sums.slip_per_n * demand.force_n * asked.direction).clamp(-MOST_SLIP, MOST_SLIP);
-        demand.speed_m_s = rolling_m_s / (1.0 - slip);
+        demand.speed_m_s = sums.turning_m_s(rolling_m_s, demand.force_n, asked.direction);
         let own = asked.layout.driveline.clone();
         let delivery = self.deliver(&demand, (sums, way), &asked.states[own.clone()], &mut rates[own]);
         let brake_n = asked.brake_n(|| {

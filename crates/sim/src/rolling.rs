@@ -2,7 +2,7 @@
 
 #![allow(clippy::inline_always, reason = "a part of the balance")]
 
-use crate::balance::{Asked, Command, MOST_SLIP, Rolled, Sums};
+use crate::balance::{Asked, Command, Rolled, Sums};
 use crate::deciding::Deciding;
 use crate::{Model, Resistance};
 use headland_plugin::{Contact, Situation};
@@ -45,16 +45,9 @@ impl Model {
         };
         situation.tractive_force_n = wanted_n;
         demand.force_n = self.govern(&situation, command, given, layout, states, rates);
-        let slip_of = |force_n: f64| {
-            if sums.slip_per_n == 0.0 {
-                return speed_m_s;
-            }
-            let slip = (sums.slip_per_n * force_n * direction).clamp(-MOST_SLIP, MOST_SLIP);
-            speed_m_s / (1.0 - slip)
-        };
-        demand.speed_m_s = slip_of(demand.force_n);
+        demand.speed_m_s = sums.turning_m_s(speed_m_s, demand.force_n, direction);
         let mut own = &states[range.clone()];
-        if DECIDES && sums.slip_per_n == 0.0 && !own.is_empty() {
+        if DECIDES && !sums.slips() && !own.is_empty() {
             own = deciding.decide(&*self.driveline, &demand, own, &rates[range.clone()]);
         }
         let behind = (sums, asked.way());
@@ -62,8 +55,8 @@ impl Model {
         // A recorded motion was driven by what it took, and a recorded force was there, whatever the driveline of the model
         // could have given.
         let recorded = given.driven || matches!(command, Command::Recorded(_));
-        if sums.slip_per_n != 0.0 && delivery.force_n != demand.force_n && !recorded {
-            demand.speed_m_s = slip_of(delivery.force_n);
+        if sums.slips() && delivery.force_n != demand.force_n && !recorded {
+            demand.speed_m_s = sums.turning_m_s(speed_m_s, delivery.force_n, direction);
             delivery = self.deliver(&demand, behind, own, &mut rates[range]);
         }
         if let Command::Recorded(force_n) = command {

@@ -7,7 +7,7 @@
 
 use crate::Model;
 use crate::axles::Axles;
-use crate::balance::{Asked, Command, Instant, MOST_SLIP, Rolled, Scratch, Sums, tell};
+use crate::balance::{Asked, Command, Instant, Rolled, Scratch, Sums, tell};
 use crate::ledger::Slots;
 use crate::root::{Root, rising};
 use crate::wheels::{AxleState, FIRST_STEP, Grip, Stance, Stuck, TOLERANCE, WheelScratch};
@@ -257,11 +257,7 @@ fn net_of(grip: &Grip, sums: &Sums) -> f64 {
 
 /// Speed at which the driveline turns the wheels, with the slip that effects add.
 fn turning_m_s(asked: &Asked, sums: &Sums, slip: f64, force_n: f64) -> f64 {
-    let rolling_m_s = asked.situation.speed_m_s / (1.0 - slip);
-    if sums.slip_per_n == 0.0 {
-        return rolling_m_s;
-    }
-    rolling_m_s / (1.0 - (sums.slip_per_n * force_n * asked.direction).clamp(-MOST_SLIP, MOST_SLIP))
+    sums.turning_m_s(asked.situation.speed_m_s / (1.0 - slip), force_n, asked.direction)
 }
 
 /// How the vehicle moves under what driveline and ground give.

@@ -93,14 +93,24 @@ pub fn sensors(all: &mut Vec<Cause>, around: &Around) {
     // Force times the difference of speeds is taken from the engine; alone it could be any loss in proportion to load.
     let turned = around.channels.iter().any(|name| name == "wheel_speed_m_s");
     let balances: &'static [Kind] = if turned { &[Kind::Slip, Kind::Fuel] } else { &[Kind::Slip] };
-    all.push(cause(
-        "wheel_slip",
-        balances,
-        // Where an implement may pull and nobody knows how much, the motion tells of a part of the force only.
-        vec![positive("coefficient", "1", if around.pulls { 0.15 } else { 0.4 })],
-        "s = k F / N",
-        &["tractive_force_n"],
-        "slip of the driven wheels",
-        "pull two loads at one speed",
+    // Where an implement may pull and nobody knows how much, the motion tells of a part of the force only.
+    let slope = positive("coefficient", "1", if around.pulls { 0.15 } else { 0.4 });
+    let slips = |terms: Vec<Term>, equation: &'static str, words: &'static str| {
+        cause(
+            "wheel_slip",
+            balances,
+            terms,
+            equation,
+            &["tractive_force_n"],
+            words,
+            "pull two loads at one speed",
+        )
+    };
+    all.push(slips(vec![slope], "s = k F / N", "slip of the driven wheels"));
+    let bends = vec![slope, positive("quadratic", "1", 2.0 * slope.scale)];
+    all.push(slips(
+        bends,
+        "s = (k + k₂ |F| / N) F / N",
+        "slip of the driven wheels that grows faster than the pull",
     ));
 }

@@ -270,6 +270,18 @@ fn masses_kg(case: &Case) -> Option<Vec<Vec<f64>>> {
     case.runs.iter().map(of_run).collect()
 }
 
+/// What of a recorded wind blows against the vehicle, or across it from the right, sample by sample.
+fn wind_m_s(case: &Case, part: fn(f64) -> f64) -> Option<Vec<Vec<f64>>> {
+    let of_run = |run: &Recorded| {
+        let channel = |name: &str| run.measured.trace.get(name);
+        let (speed, from) = (channel("wind_speed_m_s")?, channel("wind_direction_rad")?);
+        let heading = channel("heading_rad")?;
+        let at = |index: usize| speed[index] * part(from[index] - heading[index]);
+        Some((0..speed.len()).map(at).collect())
+    };
+    case.runs.iter().map(of_run).collect()
+}
+
 /// What may stand in a law: of the situation, never made of what is to be explained.
 fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     /// Name, unit, samples of every run where they are known.
@@ -292,7 +304,7 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     let acceleration = of(&|run| run.acceleration_m_s2.clone()).filter(|_| kind.is_power() && known());
     let engine_speed = channel("engine_speed_rad_s").filter(|runs| kind.is_power() && tells_more(case, runs));
     let slope = Some(case.nominal.iter().map(|said| said.sin_slope.clone()).collect());
-    let offered: [Offered; 12] = [
+    let offered: [Offered; 14] = [
         ("v", "m/s", of(&|run| run.motion.value.clone())),
         ("acceleration", "m/s²", acceleration),
         ("engine_speed", "rad/s", engine_speed),
@@ -305,6 +317,8 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
         ("coasting", "1", channel("coasting")),
         ("slope", "1", slope),
         ("m", "kg", masses_kg(case)),
+        ("headwind", "m/s", wind_m_s(case, f64::cos)),
+        ("crosswind", "m/s", wind_m_s(case, f64::sin)),
     ];
     let whole = |runs: &Vec<Vec<f64>>| runs.iter().flatten().all(|value| value.is_finite());
     let variable = |(name, unit, runs): Offered| {

@@ -5,7 +5,7 @@
 //! take its whole shape up again at the cost of one number.
 
 use crate::balance::{Kind, change};
-use crate::catalogue::{Class, Form};
+use crate::catalogue::{Cause, Class, Form, Term};
 use crate::mirror::is_whole;
 use crate::prove::text;
 use crate::recorded::{Recorded, share_paths};
@@ -19,6 +19,8 @@ use headland_scenario::Scenario;
 use headland_sim::{Model, Named};
 use std::sync::Arc;
 
+/// Slip of driven wheels, which turn at v / (1 − s).
+const SLIP: &str = "wheel_slip";
 /// Accelerations that change by less than this share of themselves, in the root mean square, are as they were.
 const SAME: f64 = 0.05;
 
@@ -37,6 +39,8 @@ pub struct SoFar {
     effects: [Effects; 3],
     /// The free parameters beside them.
     values: Vec<f64>,
+    /// How much the wheels slip: parameters of their slip by their names.
+    slip: Vec<(&'static str, f64)>,
     said: Vec<Said>,
     accelerations_m_s2: Vec<Vec<f64>>,
     /// What they do together beyond the sum of what each does beside the others, by balance and run: extra mass pushes on a
@@ -74,7 +78,9 @@ impl Case<'_> {
         }
         let refined = plain(self, pool, found);
         let shared = share_paths(&self.runs, &self.fit);
-        let shown = |cured: &Cured| shared || cured.cause.form != Form::OverPosition;
+        // Wheels that slip accelerate nothing, and beside themselves they would slip twice: what that does is far from twice as much.
+        let slips = |cured: &Cured| cured.cause.id == SLIP;
+        let shown = |cured: &Cured| (shared || cured.cause.form != Form::OverPosition) && !slips(cured);
         // Masses, and what they push on; of a wind, which is no sum of columns, nothing of the kind can be said.
         let is_mass = |cured: &Cured| ["mass", "payload_change"].contains(&cured.cause.id);
         let pushes = refined.causes.iter().any(is_mass);
@@ -84,7 +90,11 @@ impl Case<'_> {
             effects(self, &refined, &shown)?,
             effects(self, &refined, &weighs)?,
         ];
-        let so_far = self.so_far_of(all, refined.values())?;
+        let slip = refined.causes.iter().filter(|cured| slips(cured)).flat_map(|cured| {
+            let values = cured.values.iter().map(|(value, _)| *value);
+            cured.cause.terms.iter().map(|term| term.name).zip(values)
+        });
+        let so_far = self.so_far_of(all, (refined.values(), slip.collect()))?;
         let (mut changed, mut all) = (0.0, 0.0);
         for (run, after) in self.runs.iter().zip(&so_far.accelerations_m_s2) {
             for (before, after) in run.acceleration_m_s2.iter().zip(after) {
@@ -104,7 +114,7 @@ impl Case<'_> {
     /// What was found so far once more, after the recordings were corrected.
     pub fn build_again(&mut self) -> Result<(), DiagnoseError> {
         if let Some(so_far) = self.so_far.take() {
-            let so_far = self.so_far_of(so_far.effects, so_far.values)?;
+            let so_far = self.so_far_of(so_far.effects, (so_far.values, so_far.slip))?;
             self.take_up(so_far);
         }
         Ok(())
@@ -144,7 +154,11 @@ impl Case<'_> {
         self.so_far = Some(so_far);
     }
 
-    fn so_far_of(&self, effects: [Effects; 3], values: Vec<f64>) -> Result<SoFar, DiagnoseError> {
+    fn so_far_of(
+        &self,
+        effects: [Effects; 3],
+        (values, slip): (Vec<f64>, Vec<(&'static str, f64)>),
+    ) -> Result<SoFar, DiagnoseError> {
         let with = |effects: &Effects, values: &[f64]| {
             said(&self.runs, &self.kinds, |run| {
                 let model = self.study.model_of(self.study.scenario(), &self.runs[run].measured, values)?;
@@ -158,7 +172,7 @@ impl Case<'_> {
         };
         let accelerations_m_s2 = self.runs.iter().zip(&told).map(accelerated).collect();
         let together = self.together(&effects[2])?;
-        Ok(SoFar { effects, values, said, accelerations_m_s2, together })
+        Ok(SoFar { effects, values, slip, said, accelerations_m_s2, together })
     }
 
     /// What effects do together, as a model with all of them says it, beyond the sum of what each does beside the others.
@@ -202,6 +216,12 @@ impl Case<'_> {
     pub fn together_so_far(&self, kind: Kind) -> Option<&Vec<Vec<f64>>> {
         let so_far = self.so_far.as_ref()?;
         so_far.together.iter().find(|(own, _)| *own == kind).map(|(_, runs)| runs)
+    }
+
+    /// As much of a cause as was found of it so far, where that is far from twice half of it.
+    pub fn step_so_far(&self, cause: &Cause, term: &Term) -> Option<f64> {
+        let slip = self.so_far.iter().filter(|_| cause.id == SLIP).flat_map(|so_far| &so_far.slip);
+        slip.filter(|(name, value)| *name == term.name && *value > 0.0).map(|(_, value)| *value).next()
     }
 
     /// What the model says of every run with what was found so far.

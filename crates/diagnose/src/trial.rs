@@ -131,7 +131,7 @@ pub fn add_trial(
     let cause = &case.causes[number];
     let mut found: Vec<Part> = Vec::new();
     for (term, part) in cause.terms.iter().enumerate().filter(|(_, term)| term.linear) {
-        let step = CAUSE_STEP * part.scale;
+        let step = case.step_so_far(cause, part).unwrap_or(CAUSE_STEP * part.scale);
         let known = pool
             .trials
             .iter()

@@ -5,7 +5,7 @@ use crate::balance::Kind;
 use headland_symbolic::Target;
 
 /// Channels that the variables of a formula are read from.
-pub const CHANNELS: [(&str, &str); 13] = [
+pub const CHANNELS: [(&str, &str); 15] = [
     ("v", "speed_m_s"),
     ("acceleration", "acceleration_m_s2"),
     ("F_drive", "tractive_force_n"),
@@ -19,6 +19,8 @@ pub const CHANNELS: [(&str, &str); 13] = [
     ("coasting", "coasting"),
     ("slope", "grade"),
     ("m", "payload_kg"),
+    ("headwind", "wind_speed_m_s"),
+    ("crosswind", "wind_speed_m_s"),
 ];
 
 /// What a law of a force is in the effect `expression`.

@@ -39,6 +39,28 @@ fn slip_is_told_along_a_run_whose_speed_over_ground_nobody_recorded() {
     assert!(mean < 0.01, "{mean}");
 }
 
+/// A slip of some hundredths where the drives pull hardest, whether it is in proportion to the pull or grows with its square; a wrong
+/// scale of a speed beside a straight one would say the latter too.
+#[test]
+fn slip_has_its_law_and_its_size_beside_a_mass_that_the_model_is_built_with() {
+    let channels = ["speed_m_s", "wheel_speed_m_s", "tractive_force_n", "heading_rad"];
+    let noisy = |name: &str, value: f64, noise: f64| match name {
+        "speed_m_s" | "wheel_speed_m_s" => value + 0.01 * noise,
+        _ => value,
+    };
+    for (name, value) in [("coefficient", 0.4), ("quadratic", 1.5)] {
+        let hidden = format!("wheel_slip({name}: {value:?}), mass(extra_mass_kg: 1500)");
+        let found = found(&recorded(&hidden, &channels, noisy), &Options::default()).unwrap();
+        let answer = &found.diagnosis.answer;
+        let slip = found.diagnosis.findings.iter().find(|one| one.id == "wheel_slip");
+        let told = slip.unwrap_or_else(|| panic!("{answer}")).parameters.iter();
+        let told: Vec<_> = told.filter(|one| one.value.abs() > 0.02).collect();
+        let [one] = told[..] else { panic!("{answer}: {told:?}") };
+        assert!(one.name == name && (one.value / value - 1.0).abs() < 0.03, "{name}: {one:?}");
+        assert!(named(&found, "mass") && found.diagnosis.findings.len() == 2, "{answer}");
+    }
+}
+
 #[test]
 fn a_run_that_no_balance_can_use_is_left_out_and_said() {
     let mut recording = super::recorded(0.07, "");

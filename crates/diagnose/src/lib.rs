@@ -33,6 +33,7 @@ mod experiment;
 mod faults;
 mod filled;
 mod foreseen;
+mod foretells;
 mod formula;
 mod gram;
 mod held;

@@ -40,7 +40,11 @@ impl State<'_> {
             let behind = best.score - other.stand.score;
             let one_way = self.is_place_told_one_way(&side.part.trial, &own.trial);
             let alike = behind < TOLERANCE_IN_DOUBT || one_way;
-            if self.id(&own.trial) == id || listed || !alike {
+            if self.id(&own.trial) == id
+                || listed
+                || !alike
+                || self.is_course_beside(&side.part.trial, &own.trial)
+            {
                 continue;
             }
             doubtful |= behind < TOLERANCE || one_way;
@@ -58,6 +62,14 @@ impl State<'_> {
             });
         }
         if doubtful { rivals } else { Vec::new() }
+    }
+
+    /// Whether one cause is a formula and the other a power that takes a course of its own in each run: the one foretells runs, the
+    /// other follows them.
+    fn is_course_beside(&self, own: &Trial, other: &Trial) -> bool {
+        let other = self.cause(other);
+        let follows = other.form == Form::OverTime && !other.by_run;
+        self.cause(own).law.is_some() && follows && other.balances.iter().all(|kind| kind.is_power())
     }
 
     /// Whether one cause is a law of places alone and the other a map of them, and neither was a path driven both ways nor an

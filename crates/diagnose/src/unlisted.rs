@@ -184,6 +184,8 @@ fn beside(
     let within = |stand: &Stand| {
         stand.parts.len() < MOST_CAUSES && worth(stand) + HARDLY * alone > worth(&found.stand)
     };
+    let courses = state.courses(&found, sought.kind);
+    let mut lasting: Vec<Stand> = Vec::new();
     let mut best: Option<Stand> = None;
     let mut as_good: Option<Stand> = None;
     let listed_of = |state: &State, stand: &Stand| -> Vec<Part> {
@@ -198,19 +200,26 @@ fn beside(
     let better = |stand: &Stand, than: &Option<Stand>| {
         than.as_ref().is_none_or(|than| good(&state, stand) > good(&state, than))
     };
+    let is_sound_set = |stand: &Stand| {
+        !state.impossible(&stand.parts, &stand.estimate)
+            && state.works_widely(stand)
+            && state.sensible(stand)
+            && !state.draws_twice(stand)
+            && state.keeps_to_priors(stand, &found.stand)
+    };
     for parts in candidates {
         let Some(stand) = state.settle(&parts, &found.stand.noises) else { continue };
-        let more = if within(&stand) { state.with_listed(&stand) } else { None };
+        let more = if within(&stand) { state.with_listed(&stand, &[]) } else { None };
+        if !courses.is_empty() {
+            lasting.extend(state.with_listed(&stand, &courses));
+            lasting.push(stand.clone());
+        }
         for stand in [more, Some(stand)].into_iter().flatten() {
             let simpler = state.simpler(&stand, &found.stand);
             let more = worth(&stand) - worth(&found.stand);
             let margin = state.margin(&found, &stand);
             let clearly = more > margin;
-            let sound = !state.impossible(&stand.parts, &stand.estimate)
-                && state.works_widely(&stand)
-                && state.sensible(&stand)
-                && !state.draws_twice(&stand)
-                && state.keeps_to_priors(&stand, &found.stand);
+            let sound = is_sound_set(&stand);
             let able = sound
                 && (clearly || simpler && more > -TOLERANCE)
                 && (simpler || !state.is_listed(&stand))
@@ -227,6 +236,11 @@ fn beside(
                 as_good = Some(stand);
             }
         }
+    }
+    lasting.retain(|stand| is_sound_set(stand));
+    let foretells = state.that_foretells(&found, lasting, sought.kind);
+    if let Some(concluded) = foretells.and_then(|stand| concluded(&state, stand, &found)) {
+        return Ok(concluded);
     }
     // A law that was found by itself has what stood in for the listed causes beside it: it is looked for once more beside them.
     if let Some(stand) = best.clone() {
@@ -471,12 +485,12 @@ impl State<'_> {
             .any(|law| reduced.squared_correlation(&law.trial.columns, &columns, &nuisance, &sd) > THEIRS)
     }
 
-    /// A set with the listed cause beside that makes it likeliest; faults of sensors were looked for before.
-    fn with_listed(&self, stand: &Stand) -> Option<Stand> {
+    /// A set with the listed cause beside that makes it likeliest, but for some; faults of sensors were looked for before.
+    fn with_listed(&self, stand: &Stand, but: &[&'static str]) -> Option<Stand> {
         let reduced = self.reduced(&stand.noises, &stand.parts)?;
         let faults = self.case.causes.iter().filter(|cause| cause.form == Form::Measured);
-        let faults: Vec<&str> = faults.map(|cause| cause.id).collect();
-        self.contest(stand, &reduced, &faults).into_iter().next().map(|one| one.stand)
+        let banned: Vec<&str> = faults.map(|cause| cause.id).chain(but.iter().copied()).collect();
+        self.contest(stand, &reduced, &banned).into_iter().next().map(|one| one.stand)
     }
 }
 

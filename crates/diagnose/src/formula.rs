@@ -24,6 +24,8 @@ pub struct Sought {
     pub target: Target,
     /// Whether places were recorded.
     pub placed: bool,
+    /// Whether it may name times and places.
+    somewhen: bool,
     /// What a formula of one makes of the rows of each balance that it shows in, sample by sample of every run: one watt or
     /// one newton, or all that a share is lost of.
     shows: Shown,
@@ -45,7 +47,18 @@ impl Sought {
             (Target::Power, _) => of_powers(case, system, kind, &ones(case))?,
         };
         let placed = case.runs.iter().any(|run| run.measured.trace.get("position_m").is_some());
-        Ok(shows.iter().any(|(shown, _)| *shown == kind).then_some(Self { kind, target, placed, shows }))
+        Ok(shows.iter().any(|(shown, _)| *shown == kind).then_some(Self {
+            kind,
+            target,
+            placed,
+            somewhen: true,
+            shows,
+        }))
+    }
+
+    /// The same by a formula that names neither times nor places.
+    pub fn anywhen(&self) -> Self {
+        Self { somewhen: false, shows: self.shows.clone(), ..*self }
     }
 
     /// What a balance's rows are made of, of what a formula says of a run; nothing where it does not show there.
@@ -68,6 +81,9 @@ impl Sought {
     fn variables(&self, case: &Case) -> Vec<Variable> {
         const OF_A_DRIVE: [&str; 6] = ["v", "temperature", "m", "engine_speed", "oil_temperature", "kappa"];
         let mut all = variables(case, if self.target == Target::Force { Kind::Motion } else { self.kind });
+        if !self.somewhen {
+            all.retain(|variable| !["t", "x"].contains(&variable.name.as_str()));
+        }
         if self.target == Target::Share {
             all.retain(|variable| OF_A_DRIVE.contains(&variable.name.as_str()));
         }

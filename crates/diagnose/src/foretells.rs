@@ -33,8 +33,15 @@ impl State<'_> {
         let courses = self.courses(found, kind);
         let brought = |stand: &Stand| worth(stand) - worth(&found.first);
         let least = BRINGS * brought(&found.stand);
-        let without =
-            |stand: &Stand| stand.parts.iter().all(|part| !courses.contains(&self.cause(&part.trial).id));
+        // A law of times or of places would be a course once more.
+        let lasts = |part: &Part| {
+            let cause = self.cause(&part.trial);
+            let course = |name: &&str| ["time_s", "position_m"].contains(name);
+            let of_law =
+                cause.law.as_ref().is_some_and(|law| law.depends_on.iter().any(|name| course(&name)));
+            !courses.contains(&cause.id) && !of_law
+        };
+        let without = |stand: &Stand| stand.parts.iter().all(lasts);
         let able = sets.into_iter().filter(|stand| without(stand) && brought(stand) > least);
         let best = able.max_by(|one, other| worth(one).total_cmp(&worth(other)))?;
         let place = self.system.kinds.iter().position(|own| *own == kind)?;

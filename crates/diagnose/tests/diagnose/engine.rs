@@ -4,6 +4,7 @@ use super::setting::{found_of_scenario, named, recording_of_scenario};
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::Options;
 use headland_recording::RecordedRun;
+use headland_trace::Origin;
 use std::sync::LazyLock;
 
 const SCENARIO: &str = r#"(
@@ -225,6 +226,43 @@ fn a_consumer_finds_its_edges_beside_cold_oil() {
         fan.parameters.iter().find(|one| one.name == name).unwrap_or_else(|| panic!("{}", said.answer)).value
     };
     assert!((value("from_s") - 50.0).abs() < 2.0 && (value("to_s") - 110.0).abs() < 2.0, "{}", said.answer);
+}
+
+/// A fan that runs while the oil is hot, beside an engine that started cold: a power that takes a course of its own in each run
+/// draws both, and tells nothing of the run that is held out.
+#[test]
+fn a_fan_by_the_recorded_temperature_of_the_oil_is_no_course_of_each_run() {
+    const HIDDEN: &str = "    effects: [cold_start(cold_torque_n_m: 90, time_constant_s: 60)],\n    free:";
+    const HOT_C: f64 = 62.0;
+    // 9 kW at the shaft.
+    const FAN_KG_S: f64 = 9e3 / (0.448 * 42.78e6);
+    let registry = headland_stock::registry();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "fuel_rate_kg_s" => value + 5e-5 * draws.normal(),
+        _ => value,
+    };
+    let channels = ["speed_m_s", "fuel_rate_kg_s"];
+    let mut recording =
+        recording_of_scenario(&LONG.replacen("    free:", HIDDEN, 1), &registry, &channels, (67, &noisy));
+    for (run, cold_c) in recording.runs.iter_mut().zip([12.0, 30.0, 21.0, 35.0, 16.0]) {
+        let oil_c: Vec<f64> =
+            run.trace.time_s().iter().map(|time_s| cold_c + 55.0 * (1.0 - (-time_s / 60.0).exp())).collect();
+        let mut fuel_kg_s = run.trace.remove("fuel_rate_kg_s").unwrap().values;
+        for (fuel, _) in fuel_kg_s.iter_mut().zip(&oil_c).filter(|(_, oil_c)| **oil_c > HOT_C) {
+            *fuel += FAN_KG_S;
+        }
+        run.trace.push("fuel_rate_kg_s", fuel_kg_s, Origin::Measured).unwrap();
+        run.trace.push("oil_temperature_c", oil_c, Origin::Measured).unwrap();
+    }
+    let found = found_of_scenario(&LONG, &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    assert!(!named(&found, "auxiliary_power"), "{}", said.answer);
+    let fan =
+        said.findings.iter().find(|one| one.id == "unlisted").unwrap_or_else(|| panic!("{}", said.answer));
+    assert_eq!(fan.depends_on, ["oil_temperature_c"], "{}", said.answer);
+    let hot = fan.parameters.iter().find(|one| one.name.starts_with("oil_temperature1")).unwrap();
+    assert!((hot.value - HOT_C).abs() < 1.0, "{}", said.answer);
 }
 
 /// Consumers that some runs switch at other times than others are a course of each run, not what all runs have in common.

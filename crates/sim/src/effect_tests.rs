@@ -166,6 +166,19 @@ fn slipping_wheels_turn_faster_and_take_power() {
     assert!(outcome.ledger.relative_residual() < 1e-9, "{:?}", outcome.ledger);
 }
 
+/// Half of the same slip grows with the pull, 200 · (0.00025 + 200 · 1.25·10⁻⁶): each of two effects takes half of the 222.2 W.
+#[test]
+fn slip_that_grows_with_the_pull_shares_its_power_with_slip_that_does_not() {
+    let straight = does(Action { slip_per_n: 2.5e-4, ..Action::default() });
+    let bent = does(Action { slip_per_n2: 1.25e-6, ..Action::default() });
+    let outcome = hold(&model(vec![straight, bent]));
+    assert!((last(&outcome, "wheel_speed_m_s") - 10.0 / 0.9).abs() < 1e-9);
+    for effect in ["effect_0_w", "effect_1_w"] {
+        assert!((last(&outcome, effect) - 1000.0 / 9.0).abs() < 1e-6, "{effect}");
+    }
+    assert!(outcome.ledger.relative_residual() < 1e-9, "{:?}", outcome.ledger);
+}
+
 /// Gives nothing, as a driveline that nobody described.
 #[derive(Debug)]
 struct Idle;

@@ -88,8 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn no_slip_can_be_less_than_none() {
-        assert!(build::<WheelSlip>("(coefficient: -0.1)").is_err());
-        assert!(build::<WheelSlip>("(quadratic: -0.1)").is_err());
+    fn what_it_does_not_know_is_refused() {
+        assert!(build::<WheelSlip>("(coefficient: 0.4, square: 0.1)").is_err());
     }
 }

@@ -37,8 +37,7 @@ impl State<'_> {
         let lasts = |part: &Part| {
             let cause = self.cause(&part.trial);
             let course = |name: &&str| ["time_s", "position_m"].contains(name);
-            let of_law =
-                cause.law.as_ref().is_some_and(|law| law.depends_on.iter().any(|name| course(&name)));
+            let of_law = cause.law.as_ref().is_some_and(|law| law.depends_on.iter().any(course));
             !courses.contains(&cause.id) && !of_law
         };
         let without = |stand: &Stand| stand.parts.iter().all(lasts);

@@ -5,7 +5,6 @@
 //! `foreseen.rs`; runs that are held out have no part in it.
 
 use crate::balance::Kind;
-use crate::catalogue::Form;
 use crate::search::{Found, worth};
 use crate::state::{Part, Stand, State};
 
@@ -20,10 +19,7 @@ impl State<'_> {
     pub fn courses(&self, found: &Found, kind: Kind) -> Vec<&'static str> {
         let free = |part: &&Part| {
             let cause = self.cause(&part.trial);
-            part.spread.is_some()
-                && cause.form == Form::OverTime
-                && !cause.by_run
-                && cause.balances.contains(&kind)
+            part.spread.is_some() && cause.is_course() && cause.balances.contains(&kind)
         };
         found.stand.parts.iter().filter(free).map(|part| self.cause(&part.trial).id).collect()
     }

@@ -68,8 +68,9 @@ impl State<'_> {
     /// other follows them.
     fn is_course_beside(&self, own: &Trial, other: &Trial) -> bool {
         let other = self.cause(other);
-        let follows = other.form == Form::OverTime && !other.by_run;
-        self.cause(own).law.is_some() && follows && other.balances.iter().all(|kind| kind.is_power())
+        self.cause(own).law.is_some()
+            && other.is_course()
+            && other.balances.iter().all(|kind| kind.is_power())
     }
 
     /// Whether one cause is a law of places alone and the other a map of them, and neither was a path driven both ways nor an

@@ -220,8 +220,9 @@ impl Case<'_> {
 
     /// As much of a cause as was found of it so far, where that is far from twice half of it.
     pub fn step_so_far(&self, cause: &Cause, term: &Term) -> Option<f64> {
-        let slip = self.so_far.iter().filter(|_| cause.id == SLIP).flat_map(|so_far| &so_far.slip);
-        slip.filter(|(name, value)| *name == term.name && *value > 0.0).map(|(_, value)| *value).next()
+        let mut slip =
+            self.so_far.iter().filter(|_| cause.id == SLIP).flat_map(|so_far| &so_far.slip).copied();
+        slip.find(|(name, value)| *name == term.name && *value > 0.0).map(|(_, value)| value)
     }
 
     /// What the model says of every run with what was found so far.

@@ -134,11 +134,9 @@ fn candidates(
     }
     let mut starts: Vec<(Vec<Part>, &Sought)> = starts.into_iter().map(|start| (start, sought)).collect();
     // What stands in for courses of time is a formula of neither times nor places.
-    let anywhen = sought.anywhen();
     let courses = State { case, system, pool, fit: &case.fit }.courses(found, sought.kind);
-    if !courses.is_empty() && rows <= MANY_ROWS {
-        starts.push((Vec::new(), &anywhen));
-    }
+    let anywhen = (!courses.is_empty() && rows <= MANY_ROWS).then(|| sought.anywhen());
+    starts.extend(anywhen.iter().map(|anywhen| (Vec::new(), anywhen)));
     for (start, sought) in starts {
         let told = laws(case, system, pool, &start, &found.stand.noises, sought)?;
         if let Some(law) = told.first().filter(|_| start.is_empty() && rows <= MANY_ROWS) {

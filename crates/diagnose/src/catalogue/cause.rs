@@ -123,6 +123,11 @@ impl Cause {
         self.terms.iter().filter(|term| SPEEDS.contains(&term.name)).count()
     }
 
+    /// Whether it takes a course of its own in each run.
+    pub fn is_course(&self) -> bool {
+        self.form == Form::OverTime && !self.by_run
+    }
+
     /// The same cause with one speed more, by its place among all.
     pub fn with_one_more_speed(&self, all: &[Self]) -> Option<usize> {
         let wanted = |other: &Self| {

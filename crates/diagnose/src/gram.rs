@@ -5,6 +5,7 @@
 //! Source: Bishop, *Pattern Recognition and Machine Learning* (2006), section 3.5.
 
 use crate::noise::{Noises, Whiteners};
+use crate::product::turned_times;
 use crate::rows::Chunk;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -96,7 +97,7 @@ impl Whitened {
         let used: Vec<usize> = (0..chunks.len()).filter(|index| fit[chunks[*index].run]).collect();
         let product = |batch: &Vec<usize>| {
             let x = self.stacked(batch);
-            x.transpose() * &*x
+            turned_times(&x, &x)
         };
         let products: Vec<DMatrix<f64>> = self.batches(&used).par_iter().map(product).collect();
         let mut sum = DMatrix::zeros(self.width + 1, self.width + 1);

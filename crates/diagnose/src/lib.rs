@@ -55,6 +55,7 @@ mod overrun;
 mod own;
 mod placed;
 mod places;
+mod product;
 mod profile;
 mod prove;
 mod recorded;

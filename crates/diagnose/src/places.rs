@@ -15,10 +15,18 @@ const FEWEST: usize = 4;
 /// Whether spells are what the ground does: runs that share a path meet them at the same places, as strong.
 pub fn of_places(case: &Case, events: &[Event]) -> bool {
     let mass_kg = |run: usize| case.nominal[run].first_mass_kg().unwrap_or(1.0);
+    let loaded = |event: &Event| (event.force_n, mass_kg(event.run));
     let (mut met, mut shared, mut count) = (0.0, 0.0, 0usize);
     for event in events {
         let run = &case.runs[event.run];
         let Some((from_m, to_m)) = stretch(run, event.from_s, event.to_s) else { continue };
+        let there = events.iter().filter(|own| {
+            let other = &case.runs[own.run];
+            let own = stretch(other, own.from_s, own.to_s).filter(|_| other.path == run.path);
+            own.is_some_and(|own| overlap((from_m, to_m), own) > 0.5 * (to_m - from_m))
+        });
+        let there: Vec<Loaded> = there.map(loaded).collect();
+        let as_strong = |own: &&Event| alike(loaded(own), loaded(event)) || as_loaded(&there, loaded(own));
         for (number, other) in case.runs.iter().enumerate() {
             let apart = number != event.run && other.path == run.path;
             let Some((begin_m, end_m)) = extent(other).filter(|_| apart) else { continue };
@@ -26,9 +34,7 @@ pub fn of_places(case: &Case, events: &[Event]) -> bool {
             if crossed <= 0.5 * (to_m - from_m) {
                 continue;
             }
-            let alike =
-                |own: &&Event| alike((own.force_n, mass_kg(number)), (event.force_n, mass_kg(event.run)));
-            let own = events.iter().filter(|own| own.run == number).filter(alike);
+            let own = events.iter().filter(|own| own.run == number).filter(as_strong);
             let lies: f64 = own
                 .filter_map(|own| stretch(other, own.from_s, own.to_s))
                 .map(|own| overlap((from_m, to_m), own))
@@ -41,10 +47,27 @@ pub fn of_places(case: &Case, events: &[Event]) -> bool {
     count >= FEWEST && shared > SHARED * met
 }
 
+/// A force, and the mass of the vehicle that it acts on [N, kg].
+type Loaded = (f64, f64);
+
 /// Whether two forces on vehicles of these masses are as strong: the ground holds back in proportion to the load.
-fn alike(one: (f64, f64), other: (f64, f64)) -> bool {
+fn alike(one: Loaded, other: Loaded) -> bool {
     let same = |one: f64, other: f64| (one - other).abs() < ALIKE * other.abs();
     same(one.0, other.0) || same(one.0 / one.1, other.0 / other.1)
+}
+
+/// Whether a force is what those at one place say by the load: ground that gives way more under a heavier vehicle holds it back
+/// by more than its share, and still by a line.
+fn as_loaded(there: &[Loaded], own: Loaded) -> bool {
+    /// A line goes through two of them, whatever they are.
+    const FEWEST: usize = 5;
+    let count = there.len() as f64;
+    let mean = |of: fn(&Loaded) -> f64| there.iter().map(of).sum::<f64>() / count;
+    let (force_n, mass_kg) = (mean(|one| one.0), mean(|one| one.1));
+    let spread: f64 = there.iter().map(|one| (one.1 - mass_kg).powi(2)).sum();
+    let common: f64 = there.iter().map(|one| (one.1 - mass_kg) * (one.0 - force_n)).sum();
+    let said_n = force_n + common / spread * (own.1 - mass_kg);
+    there.len() >= FEWEST && (own.0 - said_n).abs() < ALIKE * said_n.abs()
 }
 
 /// Where a run was between two times [m].
@@ -79,6 +102,21 @@ mod tests {
         // 0.017 of the weight of 8.4 t and of 11.1 t; 1.4 kN and 2.1 kN on the same mass are two forces.
         assert!(alike((1400.0, 8352.0), (1860.0, 11_140.0)));
         assert!(!alike((1400.0, 8352.0), (2100.0, 8352.0)));
+    }
+
+    /// 0.007 (1 + payload / 3 t) of the weight of 9 t and a payload; the same forces on a vehicle that is always as heavy are none.
+    #[test]
+    fn a_patch_that_gives_way_holds_a_heavier_vehicle_back_by_more_than_its_share() {
+        let of = |payload_kg: f64| {
+            let mass_kg = 9000.0 + payload_kg;
+            (0.007 * (1.0 + payload_kg / 3000.0) * 9.81 * mass_kg, mass_kg)
+        };
+        let there = [0.0, 1500.0, 3000.0, 4500.0, 6000.0].map(of);
+        assert!(!alike(there[0], there[4]));
+        assert!(there.iter().skip(1).all(|own| as_loaded(&there, *own)));
+        let always = there.map(|(force_n, _)| (force_n, 12_000.0));
+        assert!(!as_loaded(&always, always[4]));
+        assert!(!as_loaded(&there[..4], there[0]), "four are too few");
     }
 
     #[test]

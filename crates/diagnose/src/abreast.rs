@@ -5,7 +5,6 @@
 
 use crate::band::{Band, Factor};
 use crate::gram::{Reduced, Whitened, right_side};
-use crate::product::turned_times;
 use crate::profile::{Function, Group, Profile, Spread, Widths, log_precision, precision_entries};
 use crate::rows::Chunk;
 use nalgebra::{DMatrix, DVector};
@@ -61,7 +60,7 @@ impl<'p, 'a> Abreast<'p, 'a> {
     ) -> Option<()> {
         let Solved { factor, mut cross, log_prior } = self.solved(whitened, chunks, fit)?;
         factor.half_solve(&mut cross);
-        reduced.take(&turned_times(&cross, &cross), factor.log_determinant() - log_prior);
+        reduced.take(&(cross.transpose() * &cross), factor.log_determinant() - log_prior);
         Some(())
     }
 
@@ -127,12 +126,12 @@ impl<'p, 'a> Abreast<'p, 'a> {
             chunks.par_iter().enumerate().map(of_chunk).collect();
         for (index, own) in of_chunks.iter().enumerate() {
             for (first, basis) in own {
-                matrix.add_block(*first, &turned_times(basis, basis));
+                matrix.add_block(*first, &(basis.transpose() * basis));
                 for (other, beside) in own.iter().filter(|(other, _)| other < first) {
-                    matrix.add_beside(*first, *other, &turned_times(basis, beside));
+                    matrix.add_beside(*first, *other, &(basis.transpose() * beside));
                 }
                 let mut view = cross.view_mut((*first, 0), (basis.ncols(), whitened.width() + 1));
-                view += turned_times(basis, &whitened.chunks[index]);
+                view += basis.transpose() * &whitened.chunks[index];
             }
         }
         Some(Solved { factor: matrix.cholesky()?, cross, log_prior })

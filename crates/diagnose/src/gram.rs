@@ -5,7 +5,6 @@
 //! Source: Bishop, *Pattern Recognition and Machine Learning* (2006), section 3.5.
 
 use crate::noise::{Noises, Whiteners};
-use crate::product::turned_times;
 use crate::rows::Chunk;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -97,7 +96,7 @@ impl Whitened {
         let used: Vec<usize> = (0..chunks.len()).filter(|index| fit[chunks[*index].run]).collect();
         let product = |batch: &Vec<usize>| {
             let x = self.stacked(batch);
-            turned_times(&x, &x)
+            x.transpose() * &*x
         };
         let products: Vec<DMatrix<f64>> = self.batches(&used).par_iter().map(product).collect();
         let mut sum = DMatrix::zeros(self.width + 1, self.width + 1);

@@ -55,7 +55,6 @@ mod overrun;
 mod own;
 mod placed;
 mod places;
-mod product;
 mod profile;
 mod prove;
 mod recorded;

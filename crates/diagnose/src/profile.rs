@@ -11,7 +11,6 @@ use crate::band::{Band, Factor};
 use crate::catalogue::Form;
 use crate::gram::{Column, Reduced, Whitened, right_side};
 use crate::jumps::{Jumps, squares};
-use crate::product::turned_times;
 use crate::recorded::Recorded;
 use crate::rows::{Chunk, Row};
 use nalgebra::{DMatrix, DVector};
@@ -195,7 +194,7 @@ impl<'a> Profile<'a> {
             let factor = matrix.cholesky().ok_or(())?;
             factor.half_solve(&mut cross);
             let log = factor.log_determinant() - log_precision(number, group, spread);
-            Ok(Some((turned_times(&cross, &cross), log)))
+            Ok(Some((cross.transpose() * &cross, log)))
         };
         let taken: Result<Vec<_>, ()> = groups.par_iter().enumerate().map(of_group).collect();
         for (taken, log) in taken.ok()?.into_iter().flatten() {
@@ -261,8 +260,8 @@ impl<'a> Profile<'a> {
             let chunk = &chunks[index];
             let (first, mut basis) = self.basis(index, chunk, group);
             whitened.whiteners.whiten(index, chunk, &mut basis);
-            let own = turned_times(&basis, &basis);
-            let with = turned_times(&basis, &whitened.chunks[index]);
+            let own = basis.transpose() * &basis;
+            let with = basis.transpose() * &whitened.chunks[index];
             let local = basis.ncols();
             matrix.add_block(first, &own);
             let mut view = cross.view_mut((first, 0), (local, width + 1));

@@ -82,7 +82,7 @@ fn of_many_days(days: u32, registry: &Registry, hidden: &dyn Fn(u32) -> String) 
 fn tyres_that_warm_up_from_a_cold_day_are_one_cause() {
     let registry = headland_stock::registry();
     let warming = "rolling_temperature(cold_coefficient: 0.012, time_constant_s: 40)";
-    let recording = of_many_days(8, &registry, &|_| warming.to_owned());
+    let recording = of_many_days(6, &registry, &|_| warming.to_owned());
     let found = found_of_scenario(&drive(""), &recording, &Options::default(), &registry).unwrap();
     let said = &found.diagnosis;
     let [tyres] = &said.findings[..] else { panic!("{}", said.answer) };

@@ -110,6 +110,15 @@ pub struct Measured {
     pub compared: Vec<bool>,
 }
 
+impl Measured {
+    /// Sample by sample, whether the model follows the motion, since something drove that was not recorded.
+    pub fn followed(&self) -> Vec<bool> {
+        let told = self.how.drive == Drive::Coast && self.how.also.contains(&Inputs::Coasting);
+        let coasting = if told { is_coasting(&self.trace) } else { vec![true; self.trace.len()] };
+        coasting.iter().map(|coasting| !coasting).collect()
+    }
+}
+
 /// A scenario with the recording that it is held against.
 #[derive(Clone)]
 pub struct Study<'a> {
@@ -510,7 +519,10 @@ fn measured(
         _ => length_m,
     });
     let how = Replay { drive, also, window_s, smoothing_s, step_s: settings.step_s, reversed_from_m };
-    let compared = compared(&trace, smoothing_s, settings.least_acceleration_m_s2);
+    let mut compared = compared(&trace, smoothing_s, settings.least_acceleration_m_s2);
+    if drive == Drive::Coast {
+        compared.iter_mut().zip(is_coasting(&trace)).for_each(|(compared, coasting)| *compared &= coasting);
+    }
     Ok(Measured { id: run.id.clone(), trace, how, signals, held_out: run.held_out, known, compared })
 }
 
@@ -525,11 +537,12 @@ fn path_length_m(recording: &Recording, path: Option<&str>) -> f64 {
 }
 
 /// What can drive the model best: rolling free, a recorded force, a recorded torque, and else the speed. A driveline that
-/// never drives coasts where nothing was recorded that could have driven.
+/// never drives coasts where nothing was recorded that could have driven. Where nothing was that the speed could foretell either,
+/// the parts that roll free are left.
 fn drive_of(trace: &Trace, model: &Model) -> Drive {
     let coasts = |values: &[f64]| values.iter().all(|value| *value >= 0.5);
-    let driven = |name: &&str| trace.get(name).is_some();
-    if trace.get(COASTING).map_or(!model.driveline.drives() && !DRIVING.iter().any(driven), coasts) {
+    let known = |name: &&str| trace.get(name).is_some();
+    if trace.get(COASTING).map_or(!model.driveline.drives() && !DRIVING.iter().any(known), coasts) {
         Drive::Coast
     } else if trace.get("tractive_force_n").is_some() {
         Drive::Force
@@ -537,16 +550,24 @@ fn drive_of(trace: &Trace, model: &Model) -> Drive {
         && model.driveline.force_of_torque_n(1.0, 1.0).is_some()
     {
         Drive::Torque
+    } else if is_coasting(trace).contains(&true) && !signals(Drive::Speed).iter().any(known) {
+        Drive::Coast
     } else {
         Drive::Speed
     }
 }
 
-/// Every circumstance that was recorded throughout; neutral only where it is not what drives.
+/// Sample by sample, whether a recording says that the vehicle rolls free.
+fn is_coasting(trace: &Trace) -> Vec<bool> {
+    trace.get(COASTING).map_or_else(Vec::new, |values| values.iter().map(|value| *value >= 0.5).collect())
+}
+
+/// Every circumstance that was recorded throughout; neutral only where it is not all that drives.
 fn inputs_of(trace: &Trace, drive: Drive) -> Vec<Inputs> {
+    let throughout = drive == Drive::Coast && !is_coasting(trace).contains(&false);
     Inputs::ALL
         .into_iter()
-        .filter(|input| !(drive == Drive::Coast && *input == Inputs::Coasting))
+        .filter(|input| !(throughout && *input == Inputs::Coasting))
         .filter(|input| input.whole(trace))
         .collect()
 }

@@ -28,6 +28,8 @@ pub struct Pair {
     pub drive: &'static str,
     /// Samples that are not compared, because brakes may have acted that were not recorded.
     pub left_out: usize,
+    /// Samples that are not compared, because something drove that was not recorded: the model follows the motion there.
+    pub followed: usize,
     /// Whether the run is never fitted.
     pub held_out: bool,
 }
@@ -103,8 +105,15 @@ fn pair(run: &Measured, outcome: Outcome) -> Result<Pair, Failure> {
     let mut comparison = compare_traces(&run.id, &measured, &outcome.trace)?;
     // A total counts every sample, braked or not: energy does not care who stopped the vehicle.
     comparison.totals = compare_traces(&run.id, &run.trace, &outcome.trace)?.totals;
+    let followed = run.followed();
     Ok(Pair {
-        left_out: run.compared.iter().filter(|compared| !**compared).count(),
+        left_out: run
+            .compared
+            .iter()
+            .zip(&followed)
+            .filter(|(compared, followed)| !**compared && !**followed)
+            .count(),
+        followed: followed.iter().filter(|followed| **followed).count(),
         signals: run.signals.clone(),
         drive: drive_name(run.how.drive),
         held_out: run.held_out,

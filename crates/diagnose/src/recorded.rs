@@ -183,6 +183,11 @@ impl Recorded {
         }
     }
 
+    /// What drives the run forward where speeds are held against each other: the parts that coast, where nothing else can.
+    pub fn shown_forward(&self) -> Option<Drive> {
+        self.forward().or((self.measured.how.drive == Drive::Coast).then_some(Drive::Coast))
+    }
+
     /// The acceleration that recorded force and a model's resistance make, where the vehicle moves and both are known; else
     /// the recorded one [m/s²].
     pub fn accelerated_m_s2(&self, resistance_n: &[f64], effective_mass_kg: &[f64]) -> Vec<f64> {

@@ -294,6 +294,47 @@ fn a_path_that_ends_and_a_phase_that_does_not_are_reported() {
     assert!(matches!(coast(&model, 1.0, 0.5).end, End::Stopped { reason, .. } if reason.contains("1000 s")));
 }
 
+/// Something drives that nobody recorded, until the vehicle coasts: the model follows it so far, and coasts from there. What it
+/// is told of the drive changes nothing of the coast, which another vehicle would not repeat.
+#[test]
+fn a_coast_that_follows_a_drive_starts_from_it() {
+    let model = tractor(100.0 / 3.6, 6.0);
+    let phases = vec![
+        Phase::Reach { speed_m_s: 6.0, acceleration_m_s2: 0.4 },
+        Phase::Hold { for_s: 5.0 },
+        Phase::Coast { until: Until::SpeedBelow(1.0) },
+    ];
+    let mut original = drive(&model, 1.0, 0.02, phases).trace;
+    let begins = 12.5 + 5.0;
+    let coasting: Vec<f64> = original.time_s().iter().map(|time| f64::from(*time > begins + 0.1)).collect();
+    let coasts: Vec<bool> = coasting.iter().map(|coasting| *coasting > 0.5).collect();
+    original.remove("coasting");
+    original.push("coasting", coasting, headland_trace::Origin::Measured).unwrap();
+    let how = Replay {
+        drive: Drive::Coast,
+        also: vec![crate::Inputs::Coasting],
+        window_s: None,
+        smoothing_s: 0.05,
+        step_s: 0.02,
+        reversed_from_m: None,
+    };
+    let apart = |model: &Model| {
+        let modelled = replay(model, &original, &how).unwrap().trace;
+        let speeds = modelled.get("speed_m_s").unwrap().iter().zip(original.get("speed_m_s").unwrap());
+        let apart: Vec<f64> = speeds.map(|(one, other)| (one - other).abs()).collect();
+        let worst = |wanted: bool| {
+            let own = apart.iter().zip(&coasts).filter(|(_, coasts)| **coasts == wanted);
+            own.map(|(apart, _)| *apart).fold(0.0, f64::max)
+        };
+        (worst(false), worst(true))
+    };
+    let (driven, coasted) = apart(&model);
+    assert!(driven < 0.02 && coasted < 0.02, "{driven} {coasted}");
+    // A drag area of 60 m² is driven along the same, and coasts otherwise.
+    let (driven, coasted) = apart(&tractor(100.0 / 3.6, 60.0));
+    assert!(driven < 0.02 && coasted > 0.1, "{driven} {coasted}");
+}
+
 /// What the model did, handed back to it as a recording, gives the same forces and the same motion again.
 #[test]
 fn a_replay_of_the_models_own_drive_repeats_it() {

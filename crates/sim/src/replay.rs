@@ -22,7 +22,8 @@ pub enum Drive {
     Torque,
     /// `tractive_force_n`.
     Force,
-    /// None: it coasts.
+    /// None: it coasts. Where `Inputs::Coasting` is told and says that it does not, the recorded motion is followed, and the next
+    /// coast starts from it.
     Coast,
 }
 
@@ -321,6 +322,12 @@ impl<'a> Tape<'a> {
         Command::Recorded(if speed <= 0.0 { force.max(0.0) } else { force })
     }
 
+    /// Whether something drives the vehicle of which nothing is known but how it moved.
+    fn is_followed(&self, how: &Replay, index: usize) -> bool {
+        let coasting = self.also.iter().find(|(input, _)| *input == Inputs::Coasting);
+        how.drive == Drive::Coast && coasting.is_some_and(|(_, columns)| columns[0][index] < 0.5)
+    }
+
     /// Follows the recorded motion sample by sample. `command` is told the sample, the speed and whether it coasts, and
     /// says as well whether the motion is what drives.
     fn follow(
@@ -364,7 +371,9 @@ impl<'a> Tape<'a> {
         let mut window_start_s = self.time_s[0];
         for index in 0..self.time_s.len() {
             let (begin_s, next) = (self.time_s[index], (index + 1).min(self.time_s.len() - 1));
-            if how.window_s.is_some_and(|window_s| begin_s - window_start_s >= window_s) {
+            let followed = self.is_followed(how, index);
+            let starts = followed || index > 0 && self.is_followed(how, index - 1);
+            if starts || how.window_s.is_some_and(|window_s| begin_s - window_start_s >= window_s) {
                 machine.set_motion(self.position_m[index], self.motion.value[index].max(0.0));
                 self.adopt_charge(&mut machine, index);
                 window_start_s = begin_s;
@@ -379,6 +388,8 @@ impl<'a> Tape<'a> {
                 let (given, coasting) = self.given(model, index, share);
                 let command = if stands {
                     Command::Accelerate(0.0)
+                } else if followed {
+                    Command::Accelerate(self.motion.slope[index])
                 } else {
                     self.pushed(model, how, (index, share), at.speed_m_s, coasting)
                 };

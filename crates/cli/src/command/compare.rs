@@ -98,15 +98,24 @@ pub fn compare(registry: &Registry, options: &CompareOptions, say: Say) -> Resul
 /// What was decided on the way.
 pub fn notes(of_study: &[String], pairs: &[Pair]) -> Vec<String> {
     let mut notes = of_study.to_vec();
-    let (left_out, all) =
-        pairs.iter().fold((0, 0), |(out, all), pair| (out + pair.left_out, all + pair.measured.len()));
-    if left_out > 0 {
-        notes.push(format!(
-            "{left_out} of {all} samples ({:.1} %) are left out of the errors, not of the totals: the vehicle slows \
-             down harder there than `least_acceleration_m_s2`, and brakes were not recorded",
-            100.0 * left_out as f64 / all as f64
-        ));
-    }
+    let all: usize = pairs.iter().map(|pair| pair.measured.len()).sum();
+    let mut left_out = |of: fn(&Pair) -> usize, why: &str| {
+        let count: usize = pairs.iter().map(of).sum();
+        if count > 0 {
+            let share = 100.0 * count as f64 / all as f64;
+            notes.push(format!(
+                "{count} of {all} samples ({share:.1} %) are left out of the errors, not of the totals: {why}"
+            ));
+        }
+    };
+    left_out(
+        |pair| pair.left_out,
+        "the vehicle slows down harder there than `least_acceleration_m_s2`, and brakes were not recorded",
+    );
+    left_out(
+        |pair| pair.followed,
+        "the vehicle does not coast there, and what drives it was not recorded: the model follows its motion",
+    );
     notes
 }
 
@@ -123,7 +132,7 @@ pub fn document(
         run: pair.comparison.run.clone(),
         drive: pair.drive,
         judged_by: pair.signals.clone(),
-        samples_left_out: pair.left_out,
+        samples_left_out: pair.left_out + pair.followed,
     };
     let required = |check: &Check| Required { text: check.requirement.to_string(), check: check.clone() };
     Comparison {

@@ -49,7 +49,7 @@ fn of_speed(
     run: usize,
 ) -> Result<Option<Shown>, DiagnoseError> {
     let before = &case.raw[run];
-    let Some(drive) = after.forward() else { return Ok(None) };
+    let Some(drive) = after.shown_forward() else { return Ok(None) };
     let long = after.measured.trace.duration_s() > 2.0 * WINDOW_S;
     let window_s = after.measured.how.window_s.or(long.then_some(WINDOW_S));
     let speed = |model: &headland_sim::Model, of: &Recorded| -> Result<Vec<f64>, DiagnoseError> {

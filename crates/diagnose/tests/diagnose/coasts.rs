@@ -1,6 +1,6 @@
 //! Coast-downs of which nothing but the speed was recorded.
 
-use super::setting::{found_of_scenario, named, recording_of_scenario};
+use super::setting::{ELECTRIC, found_of_scenario, named, recording_of_scenario};
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{DiagnoseError, Diagnosed, Options, Verdict};
 use headland_trace::{Origin, Trace};
@@ -86,6 +86,33 @@ fn the_speed_of_a_vehicle_in_neutral_is_enough() {
     assert!(noted(&stated, "the scenario says so"), "{:?}", stated.diagnosis.notes);
     let driven = found("", "replay: (drive: Speed),").unwrap_err().to_string();
     assert!(driven.contains("no balance can be made"), "{driven}");
+}
+
+/// A vehicle that is driven up to speed by what nobody recorded, and says when it rolls free: its speed is held against a coast that
+/// starts where the drive ended.
+#[test]
+fn drives_that_coast_at_times_are_proven_where_they_coast() {
+    let of = |effects: &str| {
+        let driven = scenario(effects, "").replace(
+            "cycle: [Coast(until: SpeedBelow(speed_m_s: 0.6))]",
+            "cycle: [Reach(speed_m_s: 9, acceleration_m_s2: 0.4), Coast(until: SpeedBelow(speed_m_s: 5)), \
+             Reach(speed_m_s: 7, acceleration_m_s2: 0.4), Coast(until: SpeedBelow(speed_m_s: 0.6))]",
+        );
+        driven.replace("driveline: Neutral()", &format!("driveline: {ELECTRIC}"))
+    };
+    let registry = headland_stock::registry();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.03 * draws.normal(),
+        _ => value,
+    };
+    let hidden = of("speed_threshold(force_n: 900.0, threshold_m_s: 5.0, width_m_s: 0.2)");
+    let mut recording = recording_of_scenario(&hidden, &registry, &["speed_m_s", "coasting"], (43, &noisy));
+    recording.runs.truncate(5);
+    let found = found_of_scenario(&of(""), &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    assert!(named(&found, "speed_threshold"), "{}", said.answer);
+    let held_out = said.fit.held_out.as_ref().unwrap();
+    assert!(held_out.rmse_before > 0.1 && held_out.rmse_after < 2.0 * held_out.noise, "{held_out:?}");
 }
 
 /// Rolling in neutral, a drag of the driveline and one of the ground that grow with speed are the same.

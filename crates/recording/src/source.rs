@@ -56,6 +56,9 @@ pub(crate) fn open(
     let mut file = File::open(path).map_err(refused)?;
     let mut head = [0; 4];
     let known = fill(&mut file, &mut head).map_err(refused)?;
+    if known == 0 {
+        return Err(RecordingError::Empty { at: Place::file(path), what: "the file is empty" });
+    }
     if known == 4 && &head == b"PAR1" {
         return Ok(Source::Parquet);
     }

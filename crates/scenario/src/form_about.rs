@@ -189,11 +189,13 @@ pub const ABOUT: &[(&str, &str, &str)] = &[
     ("scenario", "replay.inputs.VerticalAcceleration", "of the vehicle, which says how hard it is shaken"),
     ("scenario", "replay.inputs.Wind", "speed and direction"),
     ("scenario", "replay.inputs.AirTemperature", "of the air"),
+    ("scenario", "replay.inputs.OilTemperature", "of the oil of the engine or the driveline"),
     ("scenario", "replay.inputs.AuxiliaryPower", "of other consumers"),
     ("scenario", "replay.inputs.DrawbarForce", "at the hitch"),
     ("scenario", "replay.inputs.Payload", "mass that is carried beside that of the vehicle"),
     ("scenario", "replay.inputs.Coasting", "when it was in neutral"),
     ("scenario", "replay.inputs.Brake", "force of the service brakes"),
+    ("scenario", "replay.inputs.EngineSpeed", "of the engine, whatever the driveline would have chosen"),
     ("scenario", "replay.window_s", "after which a long recording starts anew"),
     (
         "scenario",

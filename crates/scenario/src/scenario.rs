@@ -403,11 +403,13 @@ fn replay_settings(file: &ScenarioFile) -> ReplaySettings {
                 InputFile::VerticalAcceleration => Inputs::VerticalAcceleration,
                 InputFile::Wind => Inputs::Wind,
                 InputFile::AirTemperature => Inputs::AirTemperature,
+                InputFile::OilTemperature => Inputs::OilTemperature,
                 InputFile::AuxiliaryPower => Inputs::AuxiliaryPower,
                 InputFile::DrawbarForce => Inputs::DrawbarForce,
                 InputFile::Payload => Inputs::Payload,
                 InputFile::Coasting => Inputs::Coasting,
                 InputFile::Brake => Inputs::Brake,
+                InputFile::EngineSpeed => Inputs::EngineSpeed,
             };
             inputs.iter().map(input).collect()
         }),

@@ -142,11 +142,13 @@ pub enum InputFile {
     VerticalAcceleration,
     Wind,
     AirTemperature,
+    OilTemperature,
     AuxiliaryPower,
     DrawbarForce,
     Payload,
     Coasting,
     Brake,
+    EngineSpeed,
 }
 
 #[derive(Debug, Deserialize)]

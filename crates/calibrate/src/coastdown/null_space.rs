@@ -225,5 +225,5 @@ fn number(value: f64, unit: &str) -> String {
     let (value, unit) = if unit == "1" { (100.0 * value, "%") } else { (value, unit) };
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0..=6")]
     let digits = (2.0 - value.abs().log10().floor()).clamp(0.0, 6.0) as usize;
-    format!("{value:+.digits$} {unit}")
+    format!("{value:+.digits$} {unit}").replacen('-', "−", 1)
 }

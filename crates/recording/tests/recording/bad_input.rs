@@ -151,6 +151,8 @@ fn bytes_that_are_not_text() {
     assert!(cut.starts_with("reading stopped"), "{cut}");
     let parquet = Folder::log(b"PAR1 and nothing behind it", "").refusal();
     assert!(parquet.contains("log.csv"), "{parquet}");
+    let nothing = Folder::log(b"", "format: parquet").refusal();
+    assert_eq!(nothing, "the file is empty, expected a header and rows\n  log.csv");
 }
 
 #[test]

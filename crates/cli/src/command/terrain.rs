@@ -194,7 +194,7 @@ fn in_words(told: &Told, picture: Option<&Path>) -> String {
         text,
         "  grade    at most {:.1} % up, {:.1} % down",
         100.0 * told.steepest_up.max(0.0),
-        100.0 * (-told.steepest_down).max(0.0)
+        100.0 * (0.0 - told.steepest_down).max(0.0)
     );
     if let Some(radius_m) = told.tightest_radius_m {
         let _ = writeln!(text, "  bends    down to {}", quantity(radius_m, "m"));

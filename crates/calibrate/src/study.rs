@@ -114,8 +114,10 @@ impl Measured {
     /// Sample by sample, whether the model follows the motion, since something drove that was not recorded.
     pub fn followed(&self) -> Vec<bool> {
         let told = self.how.drive == Drive::Coast && self.how.also.contains(&Inputs::Coasting);
-        let coasting = if told { is_coasting(&self.trace) } else { vec![true; self.trace.len()] };
-        coasting.iter().map(|coasting| !coasting).collect()
+        if !told {
+            return vec![false; self.trace.len()];
+        }
+        is_coasting(&self.trace).iter().map(|coasting| !coasting).collect()
     }
 }
 
@@ -519,11 +521,12 @@ fn measured(
         _ => length_m,
     });
     let how = Replay { drive, also, window_s, smoothing_s, step_s: settings.step_s, reversed_from_m };
-    let mut compared = compared(&trace, smoothing_s, settings.least_acceleration_m_s2);
-    if drive == Drive::Coast {
-        compared.iter_mut().zip(is_coasting(&trace)).for_each(|(compared, coasting)| *compared &= coasting);
-    }
-    Ok(Measured { id: run.id.clone(), trace, how, signals, held_out: run.held_out, known, compared })
+    let compared = compared(&trace, smoothing_s, settings.least_acceleration_m_s2);
+    let mut measured =
+        Measured { id: run.id.clone(), trace, how, signals, held_out: run.held_out, known, compared };
+    let followed = measured.followed();
+    measured.compared.iter_mut().zip(followed).for_each(|(compared, followed)| *compared &= !followed);
+    Ok(measured)
 }
 
 /// How far the farthest run of a path came [m].
@@ -550,7 +553,10 @@ fn drive_of(trace: &Trace, model: &Model) -> Drive {
         && model.driveline.force_of_torque_n(1.0, 1.0).is_some()
     {
         Drive::Torque
-    } else if is_coasting(trace).contains(&true) && !signals(Drive::Speed).iter().any(known) {
+    } else if Inputs::Coasting.whole(trace)
+        && is_coasting(trace).contains(&true)
+        && !signals(Drive::Speed).iter().any(known)
+    {
         Drive::Coast
     } else {
         Drive::Speed

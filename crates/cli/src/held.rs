@@ -105,15 +105,11 @@ fn pair(run: &Measured, outcome: Outcome) -> Result<Pair, Failure> {
     let mut comparison = compare_traces(&run.id, &measured, &outcome.trace)?;
     // A total counts every sample, braked or not: energy does not care who stopped the vehicle.
     comparison.totals = compare_traces(&run.id, &run.trace, &outcome.trace)?.totals;
-    let followed = run.followed();
+    let followed = run.followed().iter().filter(|followed| **followed).count();
     Ok(Pair {
-        left_out: run
-            .compared
-            .iter()
-            .zip(&followed)
-            .filter(|(compared, followed)| !**compared && !**followed)
-            .count(),
-        followed: followed.iter().filter(|followed| **followed).count(),
+        // What is followed is not compared either.
+        left_out: run.compared.iter().filter(|compared| !**compared).count() - followed,
+        followed,
         signals: run.signals.clone(),
         drive: drive_name(run.how.drive),
         held_out: run.held_out,

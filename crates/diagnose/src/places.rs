@@ -16,17 +16,18 @@ const FEWEST: usize = 4;
 pub fn of_places(case: &Case, events: &[Event]) -> bool {
     let mass_kg = |run: usize| case.nominal[run].first_mass_kg().unwrap_or(1.0);
     let loaded = |event: &Event| (event.force_n, mass_kg(event.run));
+    let placed = events
+        .iter()
+        .filter_map(|event| Some((event, stretch(&case.runs[event.run], event.from_s, event.to_s)?)));
+    let placed: Vec<(&Event, (f64, f64))> = placed.collect();
     let (mut met, mut shared, mut count) = (0.0, 0.0, 0usize);
-    for event in events {
-        let run = &case.runs[event.run];
-        let Some((from_m, to_m)) = stretch(run, event.from_s, event.to_s) else { continue };
-        let there = events.iter().filter(|own| {
-            let other = &case.runs[own.run];
-            let own = stretch(other, own.from_s, own.to_s).filter(|_| other.path == run.path);
-            own.is_some_and(|own| overlap((from_m, to_m), own) > 0.5 * (to_m - from_m))
+    for (event, (from_m, to_m)) in &placed {
+        let (run, from_m, to_m) = (&case.runs[event.run], *from_m, *to_m);
+        let there = placed.iter().filter(|(own, place)| {
+            case.runs[own.run].path == run.path && overlap((from_m, to_m), *place) > 0.5 * (to_m - from_m)
         });
-        let there: Vec<Loaded> = there.map(loaded).collect();
-        let as_strong = |own: &&Event| alike(loaded(own), loaded(event)) || as_loaded(&there, loaded(own));
+        let there: Vec<Loaded> = there.map(|(own, _)| loaded(own)).collect();
+        let as_strong = |own: &Event| alike(loaded(own), loaded(event)) || as_loaded(&there, loaded(own));
         for (number, other) in case.runs.iter().enumerate() {
             let apart = number != event.run && other.path == run.path;
             let Some((begin_m, end_m)) = extent(other).filter(|_| apart) else { continue };
@@ -34,11 +35,8 @@ pub fn of_places(case: &Case, events: &[Event]) -> bool {
             if crossed <= 0.5 * (to_m - from_m) {
                 continue;
             }
-            let own = events.iter().filter(|own| own.run == number).filter(as_strong);
-            let lies: f64 = own
-                .filter_map(|own| stretch(other, own.from_s, own.to_s))
-                .map(|own| overlap((from_m, to_m), own))
-                .sum();
+            let own = placed.iter().filter(|(own, _)| own.run == number && as_strong(own));
+            let lies: f64 = own.map(|(_, place)| overlap((from_m, to_m), *place)).sum();
             met += crossed;
             shared += lies;
             count += 1;

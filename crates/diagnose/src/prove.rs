@@ -12,7 +12,7 @@ use crate::trial::for_run;
 use crate::voltage::{drop_v, lost_w};
 use crate::{Case, DiagnoseError};
 use headland_scenario::Scenario;
-use headland_sim::{Drive, Replay, replay};
+use headland_sim::{Replay, replay};
 use rayon::prelude::*;
 
 /// What an effect did along one run.
@@ -354,10 +354,9 @@ const WINDOW_S: f64 = 30.0;
 /// Errors of the speed, driven forward with the nominal scenario and with what was found.
 fn speeds(case: &Case, runs: &[Recorded], refined: &Refined) -> Result<Vec<Errors>, DiagnoseError> {
     let rmse = |model: &headland_sim::Model, run: &Recorded, how: &Replay| -> Result<f64, DiagnoseError> {
-        let sound = |index: usize| {
-            let sound = case.sound.get(run.number).is_none_or(|sound| sound[index]);
-            sound && (how.drive != Drive::Coast || run.measured.compared[index])
-        };
+        let followed = run.measured.followed();
+        let sound =
+            |index: usize| !followed[index] && case.sound.get(run.number).is_none_or(|sound| sound[index]);
         let failed = |error| DiagnoseError::Replay { run: run.measured.id.clone(), error };
         let modelled = replay(model, &run.measured.trace, how).map_err(failed)?.trace;
         let measured = run.measured.trace.get("speed_m_s").unwrap_or(&[]);

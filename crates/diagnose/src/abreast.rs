@@ -194,6 +194,7 @@ mod tests {
             size,
             knots_per_length: COARSE,
             jumps: None,
+            shared: false,
         });
         let profiles: Vec<Profile> = signatures
             .iter()
@@ -244,7 +245,7 @@ mod tests {
     #[test]
     fn more_functions_than_could_be_told_apart_are_refused() {
         let signature = column(|_| 1.0);
-        let spread = Spread { length: 5.0, size: 1.0, knots_per_length: COARSE, jumps: None };
+        let spread = Spread { length: 5.0, size: 1.0, knots_per_length: COARSE, jumps: None, shared: false };
         let profile = Profile {
             signature: &signature,
             at: column(|row| row),

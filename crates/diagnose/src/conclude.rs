@@ -1,7 +1,7 @@
 //! What a set of causes comes down to: each is asked whether it is needed, whether one run teaches it to another, whether it
 //! can be what it would have to be, and whether another belongs in its place.
 
-use crate::catalogue::{Cause, Form};
+use crate::catalogue::Form;
 use crate::contest::Contest;
 use crate::gram::Column;
 use crate::look::MANY_ROWS;
@@ -121,10 +121,11 @@ impl State<'_> {
         let mut out = Vec::new();
         loop {
             let Some(gains) = self.predicted(&best) else { return Some((best, out)) };
-            let timed = |place: &usize| match self.cause(&best.parts[*place].trial) {
-                Cause { run: Some(_), .. } | Cause { form: Form::OverTime, .. } => true,
-                Cause { form: Form::OverPosition, .. } => !self.paths_shared(),
-                _ => false,
+            let timed = |place: &usize| {
+                let part = &best.parts[*place];
+                let form = self.cause(&part.trial).form;
+                let course = form == Form::OverTime && part.spread.is_none();
+                self.timed(part) || course || form == Form::OverPosition && !self.paths_shared()
             };
             let worst = (0..gains.len())
                 .filter(|place| !timed(place))

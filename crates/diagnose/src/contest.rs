@@ -189,6 +189,7 @@ impl State<'_> {
                 size,
                 knots_per_length: COARSE,
                 jumps: Some(Jumps::unknown(step)),
+                shared: false,
             };
             (Part { trial: trial.clone(), spread: Some(spread) }, quiet.clone())
         };

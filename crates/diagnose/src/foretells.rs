@@ -19,7 +19,7 @@ impl State<'_> {
     pub fn courses(&self, found: &Found, kind: Kind) -> Vec<&'static str> {
         let free = |part: &&Part| {
             let cause = self.cause(&part.trial);
-            part.spread.is_some() && cause.is_course() && cause.balances.contains(&kind)
+            self.timed(part) && cause.is_course() && cause.balances.contains(&kind)
         };
         found.stand.parts.iter().filter(free).map(|part| self.cause(&part.trial).id).collect()
     }

@@ -27,6 +27,8 @@ pub struct Spread {
     pub knots_per_length: f64,
     /// Where it may jump.
     pub jumps: Option<Jumps>,
+    /// Whether all runs take one and the same course of time, each from its own start.
+    pub shared: bool,
 }
 
 /// The knots of one path or run.
@@ -86,11 +88,15 @@ pub const FINE: f64 = 8.0;
 pub const FINE_IN_TIME: f64 = 40.0;
 
 impl<'a> Profile<'a> {
-    /// A function of the position or of time, with what a parameter of one does to each row.
-    pub fn new(system: &System, runs: &[Recorded], form: Form, signature: &'a Column) -> Self {
+    /// A function of the position or of time, which all runs may share, with what a parameter of one does to each row.
+    pub fn new(
+        system: &System,
+        runs: &[Recorded],
+        (form, shared): (Form, bool),
+        signature: &'a Column,
+    ) -> Self {
         let over_position = form == Form::OverPosition;
-        let group_of: Vec<usize> =
-            if over_position { runs.iter().map(|run| run.path).collect() } else { (0..runs.len()).collect() };
+        let group_of: Vec<usize> = runs.iter().map(|run| group(form, shared, run)).collect();
         let groups = group_of.iter().max().map_or(0, |most| most + 1);
         let mut extents = vec![(f64::INFINITY, f64::NEG_INFINITY); groups];
         let mut rows = vec![0; groups];
@@ -297,6 +303,15 @@ struct Parts {
     cross: DMatrix<f64>,
 }
 
+/// The path or run of a run, by number, whose function it takes.
+fn group(form: Form, shared: bool, run: &Recorded) -> usize {
+    match form {
+        Form::OverPosition => run.path,
+        _ if shared => 0,
+        _ => run.number,
+    }
+}
+
 /// The knot to the left, and the share of the way to the next.
 fn knot(group: &Group, at: f64) -> (usize, f64) {
     let steps = ((at - group.from) / group.step).clamp(0.0, (group.count - 1) as f64);
@@ -307,6 +322,11 @@ fn knot(group: &Group, at: f64) -> (usize, f64) {
 }
 
 impl Function {
+    /// The group of a run: of its path, or of itself.
+    pub fn group_of(&self, form: Form, run: &Recorded) -> usize {
+        group(form, self.spread.shared, run)
+    }
+
     /// The function and a value that it has everywhere beside.
     pub fn raised(mut self, by: f64) -> Self {
         for (values, _) in &mut self.values {
@@ -421,7 +441,7 @@ mod tests {
     #[test]
     fn the_closed_form_of_the_determinant_is_that_of_the_matrix() {
         let group = Group { from: 0.0, step: 3.0, count: 7 };
-        let spread = Spread { length: 10.0, size: 0.3, knots_per_length: COARSE, jumps: None };
+        let spread = Spread { length: 10.0, size: 0.3, knots_per_length: COARSE, jumps: None, shared: false };
         let direct = precision(0, &group, &spread, 1).cholesky().unwrap().log_determinant();
         assert!((direct - log_precision(0, &group, &spread)).abs() < 1e-9);
     }
@@ -429,7 +449,7 @@ mod tests {
     #[test]
     fn the_precision_is_the_inverse_of_an_exponential_covariance() {
         let group = Group { from: 0.0, step: 3.0, count: 5 };
-        let spread = Spread { length: 10.0, size: 0.3, knots_per_length: COARSE, jumps: None };
+        let spread = Spread { length: 10.0, size: 0.3, knots_per_length: COARSE, jumps: None, shared: false };
         let factor = precision(0, &group, &spread, 1).cholesky().unwrap();
         let row = factor.solve(&DVector::from_fn(5, |knot, _| f64::from(knot == 3)));
         let expected = 0.09 * (-6.0_f64 / 10.0).exp();

@@ -178,8 +178,7 @@ pub fn text(case: &Case, cured: &Cured, run: usize) -> Option<String> {
         let value = function.values[run].0.mean().clamp(term.low, term.high);
         return Some(cured.cause.constant(value, &cured.accepted.trial.shape));
     }
-    let over_position = cured.cause.form == Form::OverPosition;
-    let group = if over_position { drive.path } else { run };
+    let group = function.group_of(cured.cause.form, drive);
     let knots = function.knots(group);
     let values: Vec<f64> = function.values[group].0.iter().copied().collect();
     let list =
@@ -305,15 +304,13 @@ fn along(case: &Case, cured: &Cured, refined: &Refined, kind: Kind) -> Result<Ve
         let text = cured.cause.constant(even, &cured.accepted.trial.shape);
         let after = case.said_with(&|_: &Recorded| text.clone(), &values, &[kind])?;
         let mut series = told(&after);
-        for (run, (samples, recorded)) in series.iter_mut().zip(&case.runs).enumerate() {
+        for (samples, recorded) in series.iter_mut().zip(&case.runs) {
             let time_s = recorded.measured.trace.time_s();
+            let group = function.group_of(cured.cause.form, recorded);
             for (index, sample) in samples.iter_mut().enumerate() {
-                let value = if cured.cause.form == Form::OverPosition {
-                    function.value(recorded.path, recorded.position_m[index])
-                } else {
-                    function.value(run, time_s[index])
-                };
-                *sample *= value / even;
+                let over_position = cured.cause.form == Form::OverPosition;
+                let at = if over_position { recorded.position_m[index] } else { time_s[index] };
+                *sample *= function.value(group, at) / even;
             }
         }
         Ok(series)

@@ -24,7 +24,8 @@ const SIZES: [f64; 4] = [0.1, 0.3, 3.0, 10.0];
 struct Spreading<'s, 'a> {
     state: &'s State<'a>,
     whitened: Whitened,
-    profile: Profile<'a>,
+    /// The function of each run, and the one that all share.
+    profiles: [Profile<'a>; 2],
     others: &'s [Part],
     /// Products without the other functions, where those share no rows with it.
     without: Option<Reduced>,
@@ -45,7 +46,8 @@ impl<'s, 'a> Spreading<'s, 'a> {
         } else {
             None
         };
-        Some(Self { state, whitened, profile: state.profile(&part.trial), others, without, places, sd })
+        let profiles = [false, true].map(|shared| state.profile(&part.trial, shared));
+        Some(Self { state, whitened, profiles, others, without, places, sd })
     }
 
     /// ln p of the recordings with the function spread like this, but for what does not go with the spread.
@@ -53,11 +55,17 @@ impl<'s, 'a> Spreading<'s, 'a> {
         let (state, chunks) = (self.state, &self.state.system.chunks);
         let reduced = if let Some(without) = &self.without {
             let mut reduced = without.clone();
-            self.profile.take(&self.whitened, chunks, state.fit, spread, &mut reduced)?;
+            self.profiles[usize::from(spread.shared)].take(
+                &self.whitened,
+                chunks,
+                state.fit,
+                spread,
+                &mut reduced,
+            )?;
             reduced
         } else {
             let mut profiles = state.profiles(self.others);
-            profiles.push(Some((state.profile(&part.trial), spread.clone())));
+            profiles.push(Some((state.profile(&part.trial, spread.shared), spread.clone())));
             state.without_functions(&self.whitened, &profiles, state.fit)?
         };
         Some(reduced.estimate(&self.places, &self.sd)?.log_evidence)
@@ -93,14 +101,27 @@ impl State<'_> {
         let cause = self.cause(&part.trial);
         let spreading = Spreading::of(self, part, &stand.parts, noises)?;
         let usual = cause.terms[0].scale;
+        let choice = |spread: &Spread| {
+            self.choices(&[Part { spread: Some(spread.clone()), trial: part.trial.clone() }])
+        };
         let best_of = |spreads: Vec<Spread>| {
-            let judged =
-                spreads.into_iter().filter_map(|spread| Some((spreading.evidence(part, &spread)?, spread)));
+            let judged = spreads
+                .into_iter()
+                .filter_map(|spread| Some((spreading.evidence(part, &spread)? - choice(&spread), spread)));
             judged.max_by(|one, other| one.0.total_cmp(&other.0))
         };
-        let of_length = |length: f64| Spread { length, size: usual, knots_per_length, jumps: None };
-        let possible = lengths(cause, spreading.profile.longest());
-        let (gain, spread) = best_of(possible.into_iter().map(of_length).collect())?;
+        let alike: &[bool] = if cause.is_course() && self.times_shared() { &[false, true] } else { &[false] };
+        let of_length = |length: f64| {
+            alike.iter().map(move |shared| Spread {
+                length,
+                size: usual,
+                knots_per_length,
+                jumps: None,
+                shared: *shared,
+            })
+        };
+        let possible = lengths(cause, spreading.profiles[0].longest());
+        let (gain, spread) = best_of(possible.into_iter().flat_map(of_length).collect())?;
         let sizes = SIZES.iter().map(|share| Spread { size: share * usual, ..spread.clone() }).collect();
         let (other_gain, other) = best_of(sizes)?;
         Some(if other_gain > gain { other } else { spread })
@@ -128,7 +149,7 @@ impl State<'_> {
             if spreading.without.is_none() {
                 continue;
             }
-            let longest = spreading.profile.longest();
+            let longest = spreading.profiles[0].longest();
             let shortest = lengths(cause, longest).into_iter().fold(longest, f64::min);
             let [least, .., most] = SIZES.map(|share| share * cause.terms[0].scale);
             let evidence = |length: f64, size: f64| {

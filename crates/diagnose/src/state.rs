@@ -207,10 +207,23 @@ impl<'a> State<'a> {
         })
     }
 
-    /// Whether a part is a function of time, or works in one run alone.
+    /// Whether a part is a function of time of each run, or works in one run alone.
     pub fn timed(&self, part: &Part) -> bool {
         let cause = self.cause(&part.trial);
-        cause.run.is_some() || part.spread.is_some() && cause.form == Form::OverTime
+        let own = |spread: &Spread| cause.form == Form::OverTime && !spread.shared;
+        cause.run.is_some() || part.spread.as_ref().is_some_and(own)
+    }
+
+    /// Whether a function of time may be one and the same for all runs: so many were fitted, and their clocks began alike.
+    pub fn times_shared(&self) -> bool {
+        /// The clocks of a cycle that is driven again differ by less [s].
+        const ALIKE_S: f64 = 2.0;
+        let starts = || {
+            self.case.runs.iter().map(|run| run.measured.trace.time_s().first().copied().unwrap_or(f64::NAN))
+        };
+        let first = starts().next().unwrap_or(f64::NAN);
+        self.fit.iter().filter(|fit| **fit).count() > 1
+            && starts().all(|start| (start - first).abs() < ALIKE_S)
     }
 
     /// Cost of the choice of these causes, and of what no other run shows.
@@ -245,7 +258,11 @@ impl<'a> State<'a> {
 
     /// The functions of a set, part by part.
     pub fn profiles(&self, parts: &[Part]) -> Vec<Option<(Profile<'a>, Spread)>> {
-        parts.iter().map(|part| Some((self.profile(&part.trial), part.spread.clone()?))).collect()
+        let of = |part: &Part| {
+            let spread = part.spread.clone()?;
+            Some((self.profile(&part.trial, spread.shared), spread))
+        };
+        parts.iter().map(of).collect()
     }
 
     /// Products over the runs that are `fit`, without the functions.
@@ -344,12 +361,12 @@ impl<'a> State<'a> {
             .any(|part| touched(&part.trial).iter().zip(&own).any(|(one, other)| *one && *other))
     }
 
-    /// The function of a trial, on the rows.
-    pub fn profile(&self, trial: &Trial) -> Profile<'a> {
+    /// The function of a trial, which all runs may share, on the rows.
+    pub fn profile(&self, trial: &Trial, shared: bool) -> Profile<'a> {
         Profile::new(
             self.system,
             &self.case.runs,
-            self.cause(trial).form,
+            (self.cause(trial).form, shared),
             &self.pool.columns[trial.columns[0]],
         )
     }
@@ -486,7 +503,7 @@ impl Stand {
         }
         let place = self.parts.iter().position(|own| own.trial.columns == part.trial.columns);
         if let Some(Some(function)) = place.and_then(|place| self.functions.get(place)) {
-            let made = state.profile(&part.trial).rows(state.system, function);
+            let made = state.profile(&part.trial, function.spread.shared).rows(state.system, function);
             for (row, values) in rows.iter_mut().zip(made) {
                 *row += values;
             }

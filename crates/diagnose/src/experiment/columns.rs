@@ -226,11 +226,17 @@ impl<'a, 'b> Columns<'a, 'b> {
         let all: Vec<usize> = (0..own.len()).collect();
         let whitened = Whitened::new(chunks, &self.residual, &own, &self.noises)?;
         let signature = &self.pool.columns[trial.columns[0]];
-        let profile = Profile::new(self.system, &self.case.runs, cause.form, signature);
+        let profile = Profile::new(self.system, &self.case.runs, (cause.form, false), signature);
         let lengths = like.map_or(LENGTHS_M.to_vec(), |spread| vec![spread.length]);
         let mut best: Option<(f64, Function)> = None;
         for length in lengths {
-            let spread = Spread { length, size: cause.terms[0].scale, knots_per_length: COARSE, jumps: None };
+            let spread = Spread {
+                length,
+                size: cause.terms[0].scale,
+                knots_per_length: COARSE,
+                jumps: None,
+                shared: false,
+            };
             let Some(reduced) = profile.eliminate(&whitened, chunks, fit, &spread) else { continue };
             let Some(estimate) = reduced.estimate(&all, &sd) else { continue };
             if best.as_ref().is_none_or(|(known, _)| estimate.log_evidence > *known) {
@@ -313,5 +319,5 @@ pub fn nothing(system: &System) -> Column {
 
 /// What a function does to every row: its signature times its values.
 fn along(case: &Case, system: &System, form: Form, signature: &Column, function: &Function) -> Column {
-    Profile::new(system, &case.runs, form, signature).rows(system, function)
+    Profile::new(system, &case.runs, (form, function.spread.shared), signature).rows(system, function)
 }

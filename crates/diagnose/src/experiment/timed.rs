@@ -4,6 +4,7 @@
 use super::null_space::listed;
 use super::{Candidate, TELLS};
 use crate::Case;
+use crate::catalogue::Form;
 use crate::profile::Function;
 use crate::refine::{Cured, HALF_95};
 use crate::words::number;
@@ -70,7 +71,8 @@ pub fn more_of_the_same(case: &Case, rivals: &[(&'static str, f64)]) -> Option<S
 /// Least and greatest value over the runs that were fitted, and the usual standard deviation.
 fn reach(case: &Case, function: &Function) -> Option<(f64, f64, f64)> {
     let (mut all, mut sds) = (Vec::new(), Vec::new());
-    for ((values, sd), _) in function.values.iter().zip(&case.fit).filter(|(_, fit)| **fit) {
+    let told = |group: usize| function.spread.shared || case.fit[group];
+    for (_, (values, sd)) in function.values.iter().enumerate().filter(|(group, _)| told(*group)) {
         all.extend(values.iter().copied());
         sds.extend(sd.iter().copied());
     }
@@ -89,7 +91,8 @@ fn repeated(case: &Case, function: &Function) -> Option<(usize, f64)> {
         .iter()
         .map(|run| {
             let at = |index: u32| start_s(*run) + shortest_s * f64::from(index) / f64::from(TIMES);
-            (0..=TIMES).map(|index| function.value(*run, at(index))).collect()
+            let group = function.group_of(Form::OverTime, &case.runs[*run]);
+            (0..=TIMES).map(|index| function.value(group, at(index))).collect()
         })
         .collect();
     let pairs = (0..courses.len()).flat_map(|one| (0..one).map(move |other| (one, other)));

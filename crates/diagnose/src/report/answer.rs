@@ -4,7 +4,7 @@ use super::finding::{Doubts, faulty, findings, verdict};
 use super::series::{corrections, effects, residuals};
 use super::shown::shown;
 use super::{Calibrated, Diagnosed, Diagnosis, Fit, FitRuns, Tried, Verdict, bands};
-use crate::catalogue::{Class, Form};
+use crate::catalogue::Class;
 use crate::elsewhere::elsewhere;
 use crate::events::Event;
 use crate::experiment::Proposals;
@@ -165,8 +165,8 @@ pub fn inconclusive(
 /// Whether anything that was found is what each run tells of itself alone: a function of time, or spells.
 fn timed(refined: &Refined) -> bool {
     let own = |cured: &Cured| {
-        cured.in_single_runs()
-            || cured.function().is_some() && cured.cause.form == Form::OverTime && !cured.cause.by_run
+        let own = cured.function().is_some_and(|function| !function.spread.shared);
+        cured.in_single_runs() || own && cured.cause.is_course()
     };
     refined.causes.iter().any(own)
 }

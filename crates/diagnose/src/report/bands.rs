@@ -58,25 +58,20 @@ fn of_function(case: &Case, cured: &Cured, function: &Function, effect: &Reconst
         values: function.values.iter().map(|(_, sd)| (sd.clone(), sd.clone())).collect(),
         ..function.clone()
     };
-    let half = case.runs.iter().zip(&effect.runs).enumerate().map(|(run, (drive, samples))| {
+    let half = case.runs.iter().zip(&effect.runs).map(|(drive, samples)| {
         let time_s = drive.measured.trace.time_s();
-        let place = |index: usize| {
-            if over_position { (drive.path, drive.position_m[index]) } else { (run, time_s[index]) }
-        };
+        let group = function.group_of(cured.cause.form, drive);
+        let at = |index: usize| if over_position { drive.position_m[index] } else { time_s[index] };
         let mut unit: Vec<f64> = samples
             .iter()
             .enumerate()
             .map(|(index, sample)| {
-                let (group, at) = place(index);
-                let value = function.value(group, at);
+                let value = function.value(group, at(index));
                 if value.abs() > TOO_SMALL * greatest { (sample / value).abs() } else { f64::NAN }
             })
             .collect();
         hold(&mut unit);
-        let band = |(index, unit): (usize, &f64)| {
-            let (group, at) = place(index);
-            HALF_95 * unit * sds.value(group, at)
-        };
+        let band = |(index, unit): (usize, &f64)| HALF_95 * unit * sds.value(group, at(index));
         unit.iter().enumerate().map(band).collect()
     });
     Banded { half: half.collect() }

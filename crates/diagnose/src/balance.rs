@@ -8,6 +8,7 @@ use crate::overrun::overruns;
 use crate::recorded::{Recorded, SLOWEST_M_S};
 use crate::rows::{Chunk, Row, chunks};
 use crate::said::Said;
+use crate::steps::unsure;
 use crate::tails::Tails;
 use crate::voltage::change_v;
 use headland_calibrate::statistics::{NORMAL_OF_MEDIAN, median};
@@ -214,6 +215,7 @@ impl System {
         };
         system.residual = system.residual_of(runs, said);
         system.listen(runs, said, fit);
+        system.doubt_steps(runs, fit);
         system
     }
 
@@ -251,6 +253,44 @@ impl System {
         if let Some((_, loud)) = if self.bent { by_power } else { by_speed } {
             for (chunk, loud) in self.chunks[own].iter_mut().zip(loud) {
                 chunk.loudness = loud;
+            }
+        }
+    }
+
+    /// Lets rows be as loud as a step between two samples makes them that nobody knows the time of (steps.rs).
+    fn doubt_steps(&mut self, runs: &[Recorded], fit: &[bool]) {
+        let open = |kind: Kind| -> Vec<Vec<f64>> {
+            let of_run = |run: &Recorded| match run.driven(kind) {
+                Some((values, step_s)) => unsure(&values, run.measured.trace.time_s(), step_s),
+                None => Vec::new(),
+            };
+            runs.iter().map(of_run).collect()
+        };
+        for (number, kind) in self.kinds.iter().enumerate() {
+            let usual = self.quiet_variance(number, &self.residual, fit);
+            let (Some(usual), true) =
+                (usual.filter(|usual| *usual > 0.0), [Kind::Motion, Kind::Shaft, Kind::Fuel].contains(kind))
+            else {
+                continue;
+            };
+            let open = open(*kind);
+            for chunk in self.chunks.iter_mut().filter(|chunk| chunk.balance == number) {
+                let time_s = runs[chunk.run].measured.trace.time_s();
+                let shares: Vec<f64> = chunk
+                    .rows
+                    .iter()
+                    .map(|row| row.mean_variance(time_s, &open[chunk.run]) / usual)
+                    .collect();
+                // What is less than the usual noise is in it.
+                if shares.iter().all(|share| *share < 1.0) {
+                    continue;
+                }
+                let before = |row: usize| chunk.loudness.get(row).copied().unwrap_or(1.0);
+                let loud = shares
+                    .iter()
+                    .enumerate()
+                    .map(|(row, share)| before(row).hypot(if *share < 1.0 { 0.0 } else { share.sqrt() }));
+                chunk.loudness = loud.collect();
             }
         }
     }
@@ -321,33 +361,33 @@ impl System {
     /// The noise that neighbouring rows show of what is left of them, by the median of their second differences, where it is
     /// less than `noises`.
     pub fn quiet(&self, left: &Column, fit: &[bool], noises: &Noises) -> Noises {
+        let of = |(number, noise): (usize, &Noise)| match self.quiet_variance(number, left, fit) {
+            Some(variance) if variance > 0.0 && variance < noise.sensor + noise.process => {
+                Noise { sensor: variance, process: 0.0, persistence: 0.0, ..*noise }
+            }
+            _ => *noise,
+        };
+        let each = noises.each.iter().enumerate().map(of).collect();
+        Noises { each, ..noises.clone() }
+    }
+
+    /// Variance of a row of a balance as the median of second differences shows it; none where there are no rows.
+    fn quiet_variance(&self, number: usize, left: &Column, fit: &[bool]) -> Option<f64> {
         /// Rows that share no block lie so far apart.
         const APART: usize = 2;
         /// Variance of a second difference over that of a row.
         const SECOND: f64 = 6.0;
-        let of = |(number, noise): (usize, &Noise)| {
-            let own = self.chunks.iter().zip(left);
-            let own = own.filter(|(chunk, _)| chunk.balance == number && fit[chunk.run]);
-            let differences: Vec<f64> = own
-                .flat_map(|(chunk, left)| {
-                    let left = chunk.alike(left);
-                    let last = left.len().saturating_sub(2 * APART);
-                    let second = |row| left[row] - 2.0 * left[row + APART] + left[row + 2 * APART];
-                    (0..last).map(|row: usize| second(row).abs()).collect::<Vec<_>>()
-                })
-                .collect();
-            if differences.is_empty() {
-                return *noise;
-            }
-            let variance = (NORMAL_OF_MEDIAN * median(&differences)).powi(2) / SECOND;
-            if variance > 0.0 && variance < noise.sensor + noise.process {
-                Noise { sensor: variance, process: 0.0, persistence: 0.0, ..*noise }
-            } else {
-                *noise
-            }
-        };
-        let each = noises.each.iter().enumerate().map(of).collect();
-        Noises { each, ..noises.clone() }
+        let own = self.chunks.iter().zip(left);
+        let own = own.filter(|(chunk, _)| chunk.balance == number && fit[chunk.run]);
+        let differences: Vec<f64> = own
+            .flat_map(|(chunk, left)| {
+                let left = chunk.alike(left);
+                let last = left.len().saturating_sub(2 * APART);
+                let second = |row| left[row] - 2.0 * left[row + APART] + left[row + 2 * APART];
+                (0..last).map(|row: usize| second(row).abs()).collect::<Vec<_>>()
+            })
+            .collect();
+        (!differences.is_empty()).then(|| (NORMAL_OF_MEDIAN * median(&differences)).powi(2) / SECOND)
     }
 
     /// As [`System::noises`], of the kind that it was before.

@@ -246,7 +246,7 @@ fn event(run: &Recorded, number: usize, excess: &[f64], (from, to): (usize, usiz
     let force_n = sum / count.max(1) as f64;
     let lasted_s = time_s[to] - time_s[from];
     // As many values that know nothing of each other as there are windows.
-    let sd_n = sd_n / (lasted_s / WINDOW_S).max(1.0).sqrt();
+    let sd_n = (sd_n / (lasted_s / WINDOW_S).max(1.0).sqrt()).hypot(run.open_n(time_s[from], time_s[to]));
     let gain = 0.5 * (force_n / sd_n).powi(2);
     Event { run: number, from_s: time_s[from], to_s: time_s[to], force_n, sd_n, gain }
 }

@@ -43,6 +43,8 @@ const MOST: usize = 6;
 /// Recordings begin and end while something is done: what lasts less than this at an edge is told of no vehicle [s].
 const EDGE_S: f64 = 0.5;
 const SHORT_S: f64 = 3.0;
+/// A spell is so many times what steps of the recorded force between two samples leave open, in standard deviations.
+const OPEN: f64 = 6.0;
 /// What covers more than this share of a run is no spell in it.
 const MOST_OF_A_RUN: f64 = 0.5;
 /// A braked vehicle slows down at least like this [m/s²].
@@ -114,15 +116,18 @@ pub fn weight_n(case: &Case, run: usize) -> f64 {
     masses.iter().find(|mass| mass.is_finite()).copied().unwrap_or(0.0) * STANDARD_GRAVITY_M_S2
 }
 
-/// Of spells those that lie well within their run and do not cover most of it.
+/// Of spells those that lie well within their run, do not cover most of it, and are no step of the force between two samples.
 pub fn within_runs(case: &Case, events: &[Event]) -> Vec<Event> {
     let spell = |event: &&Event| {
+        let open_n = case.runs[event.run].open_n(event.from_s, event.to_s);
         let time_s = case.runs[event.run].measured.trace.time_s();
         let (first_s, last_s) = (time_s[0], time_s[time_s.len() - 1]);
         let at_an_edge = event.from_s < first_s + EDGE_S || event.to_s > last_s - EDGE_S;
         let own = events.iter().filter(|other| other.run == event.run);
         let covered_s: f64 = own.map(|other| other.to_s - other.from_s).sum();
-        !(at_an_edge && event.to_s - event.from_s < SHORT_S) && covered_s < MOST_OF_A_RUN * (last_s - first_s)
+        !(at_an_edge && event.to_s - event.from_s < SHORT_S)
+            && covered_s < MOST_OF_A_RUN * (last_s - first_s)
+            && event.force_n > OPEN * open_n
     };
     events.iter().filter(spell).cloned().collect()
 }

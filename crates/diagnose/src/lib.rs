@@ -77,6 +77,7 @@ mod split;
 mod spreading;
 mod standin;
 mod state;
+mod steps;
 mod straying;
 mod stuck;
 mod student;

@@ -1,6 +1,8 @@
 //! A recorded run with its motion, its place and the force that moved it.
 
+use crate::balance::{FUEL_J_KG, Kind};
 use crate::standin::Prepared;
+use crate::steps::{open_between, step_s, unsure};
 use headland_calibrate::statistics::{quantile_of_sorted, sorted};
 use headland_calibrate::study::{Measured, Study};
 use headland_plugin::Shaft;
@@ -154,6 +156,35 @@ fn without_leaps(trace: &Trace) -> Trace {
 }
 
 impl Recorded {
+    /// Standard deviation of the mean force of a spell by steps of the recorded force in it or at its edges, of which nobody knows
+    /// when between two samples they were [N].
+    pub fn open_n(&self, from_s: f64, to_s: f64) -> f64 {
+        let Some((force_n, step_s)) = self.driven(Kind::Motion) else { return 0.0 };
+        let time_s = self.measured.trace.time_s();
+        let open = unsure(&force_n, time_s, step_s);
+        open_between(&open, time_s, (from_s - step_s, to_s + step_s)).sqrt() / (to_s - from_s).max(step_s)
+    }
+
+    /// What was measured of a balance that is driven, in its unit, and the time from one value to the next [s]; none where that
+    /// was not measured, and of balances that no pedal changes at once.
+    pub fn driven(&self, kind: Kind) -> Option<(Vec<f64>, f64)> {
+        let trace = &self.measured.trace;
+        let (name, values) = match kind {
+            Kind::Motion => {
+                let names = ["tractive_force_n", "motor_torque_n_m", "engine_torque_n_m"];
+                let name = names.into_iter().find(|name| trace.get(name).is_some())?;
+                (name, self.force_n.clone()?)
+            }
+            Kind::Shaft => ("engine_torque_n_m", self.engine_w.clone()?),
+            Kind::Fuel => {
+                let name = "fuel_rate_kg_s";
+                (name, trace.get(name)?.iter().map(|rate| FUEL_J_KG * rate).collect())
+            }
+            _ => return None,
+        };
+        Some((values, step_s(trace, name)))
+    }
+
     /// Everything that follows from the channels, made anew after they were changed.
     pub fn follow(&mut self) {
         if let Some(speed) = self.measured.trace.get("speed_m_s") {

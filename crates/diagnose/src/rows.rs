@@ -153,6 +153,14 @@ impl Row {
         samples[range].iter().zip(&self.weights).map(|(value, weight)| value * weight).sum()
     }
 
+    /// Variance of the hat-weighted mean of a series of which the impulse is open by so much for each second, sample by sample.
+    pub fn mean_variance(&self, time_s: &[f64], open: &[f64]) -> f64 {
+        let [from, _, to] = self.samples;
+        let Some(open) = open.get(from..to) else { return 0.0 };
+        let step_s = (time_s[to - 1] - time_s[from]) / (to - 1 - from) as f64;
+        open.iter().zip(&self.weights).map(|(open, weight)| open * weight * weight / step_s).sum()
+    }
+
     /// Hat-weighted mean of every so many samples of the run, from its first on: of those that are given.
     pub fn mean_of_every(&self, every: usize, samples: &[f64]) -> f64 {
         let [from, _, to] = self.samples;

@@ -259,9 +259,20 @@ impl System {
 
     /// Lets rows be as loud as a step between two samples makes them that nobody knows the time of (steps.rs).
     fn doubt_steps(&mut self, runs: &[Recorded], fit: &[bool]) {
+        /// A logger is slow that leaves so much time between two values: its speed is smoothed over what drivers do [s].
+        const SLOW_S: f64 = 0.4;
+        let of_motion = self.is_of_motion();
         let open = |kind: Kind| -> Vec<Vec<f64>> {
             let of_run = |run: &Recorded| match run.driven(kind) {
-                Some((values, step_s)) => unsure(&values, run.measured.trace.time_s(), step_s),
+                // A power that is made of motion knows of a step only as its speed was smoothed.
+                Some((values, step_s)) => {
+                    let smoothed_s = if kind.is_power() && of_motion && step_s > SLOW_S {
+                        run.measured.how.smoothing_s
+                    } else {
+                        0.0
+                    };
+                    unsure(&values, run.measured.trace.time_s(), step_s + smoothed_s)
+                }
                 None => Vec::new(),
             };
             runs.iter().map(of_run).collect()
@@ -269,7 +280,7 @@ impl System {
         for (number, kind) in self.kinds.iter().enumerate() {
             let usual = self.quiet_variance(number, &self.residual, fit);
             let (Some(usual), true) =
-                (usual.filter(|usual| *usual > 0.0), [Kind::Motion, Kind::Shaft, Kind::Fuel].contains(kind))
+                (usual.filter(|usual| *usual > 0.0), *kind == Kind::Motion || kind.is_power())
             else {
                 continue;
             };

@@ -9,7 +9,6 @@ use crate::search::{Accepted, Found, Rival, TOLERANCE};
 use crate::state::{Part, State};
 use crate::trial::Pool;
 use crate::{Case, DiagnoseError, System};
-use std::collections::BTreeSet;
 
 /// So many rivals are asked.
 const MOST: usize = 3;
@@ -126,11 +125,23 @@ fn built_on(
     needed: f64,
 ) -> Result<Option<f64>, DiagnoseError> {
     let kept = case.set_aside()?;
-    let only: BTreeSet<usize> = parts.iter().map(|part| part.trial.cause).collect();
-    case.only = Some(only);
-    let score = score_built(case, usable, parts, needed);
-    case.only = None;
+    let score = on_itself(case, usable, parts, needed);
     case.take_back(kept)?;
+    score
+}
+
+/// Builds on a set of causes as it is estimated beside what was built so far, until the runs accelerate as they did: the first
+/// time, they accelerate as without it. ln p of the recordings with it; none where it cannot be.
+pub fn on_itself(
+    case: &mut Case,
+    usable: &[Vec<bool>],
+    parts: &[Part],
+    needed: f64,
+) -> Result<Option<f64>, DiagnoseError> {
+    let only = parts.iter().map(|part| part.trial.cause).collect();
+    let before = case.only.replace(only);
+    let score = score_built(case, usable, parts, needed);
+    case.only = before;
     score
 }
 

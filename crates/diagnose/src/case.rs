@@ -2,6 +2,7 @@
 
 use crate::balance::{Kind, Rows, System, bearing, block_s, kinds};
 use crate::catalogue::{ARTEFACTS, Around, Cause, causes};
+use crate::cycles::{Cycles, cycles};
 use crate::own::own;
 use crate::recorded::{Recorded, recorded};
 use crate::remembered::Remembered;
@@ -101,6 +102,8 @@ pub(crate) struct Case<'a> {
     pub sound: Vec<Vec<bool>>,
     /// Whether each run may be fitted.
     pub fit: Vec<bool>,
+    /// How they are driven by the clock.
+    pub cycles: Cycles,
     /// Whether any balance can use a run. Effects are reconstructed along the others, and nothing is learned from them.
     pub bears: Vec<bool>,
     /// Whether the speed was held, so that no mass is told.
@@ -164,6 +167,7 @@ impl<'a> Case<'a> {
             remembered: Remembered::default(),
             sound: Vec::new(),
             fit: Vec::new(),
+            cycles: Cycles::Apart,
             bears: Vec::new(),
             unmoved: false,
             chosen: false,
@@ -176,6 +180,7 @@ impl<'a> Case<'a> {
         case.kinds = kinds(&case.runs, &case.nominal);
         case.bears = bearing(&case.kinds, &case.runs, &case.nominal);
         (case.fit, case.chosen) = split(&marked, &case.bears, &traits(&case.runs));
+        case.cycles = cycles(&case.runs, &case.fit);
         if !case.kinds.is_empty() {
             case.study.notes.extend(idle(&case));
         }

@@ -216,7 +216,9 @@ impl State<'_> {
                 let function = place.and_then(|place| functions.get(place)?.clone());
                 function.map(|function| joined(self.case, function.raised(even), &shares))
             };
-            let function = of(&held.functions);
+            let function = place
+                .and_then(|place| self.with_levels(&held, place))
+                .map_or_else(|| of(&held.functions), |function| Some(function.raised(even)));
             let mut one = Accepted {
                 balance: self.balance_of(&rows, &held.noises),
                 trial: part.trial.clone(),
@@ -246,6 +248,39 @@ impl State<'_> {
             first,
             needed,
         }
+    }
+
+    /// The levels of a cause that has one in each run, where it alone is one: those of runs that were not fitted as the first half
+    /// of each tells, so that the other half shows whether it holds. None of anything else.
+    fn with_levels(&self, held: &Stand, place: usize) -> Option<Function> {
+        let levelled = |part: &Part| self.cause(&part.trial).by_run && part.spread.is_some();
+        let part = &held.parts[place];
+        if !levelled(part) || held.parts.iter().filter(|part| levelled(part)).count() > 1 {
+            return None;
+        }
+        let mut function = held.functions[place].clone()?;
+        let signature = &self.pool.columns[part.trial.columns[0]];
+        for run in (0..self.fit.len()).filter(|run| !self.fit[*run]) {
+            let time_s = self.case.runs[run].measured.trace.time_s();
+            let middle_s = 0.5 * (time_s[0] + time_s[time_s.len() - 1]);
+            // What is usual of the level is a measurement of nought.
+            let (mut products, mut squares) = (0.0, function.spread.size.powi(-2));
+            for (index, chunk) in self.system.chunks.iter().enumerate().filter(|(_, chunk)| chunk.run == run)
+            {
+                let variance = held.noises.each[chunk.balance].sd().powi(2);
+                let early = chunk.rows.iter().take_while(|row| row.time_s < middle_s).count();
+                for row in 0..early {
+                    let loud = chunk.loudness.get(row).copied().unwrap_or(1.0);
+                    let weight = signature[index][row] / (variance * loud * loud);
+                    products += weight * held.left[index][row];
+                    squares += weight * signature[index][row];
+                }
+            }
+            let (values, sds) = &mut function.values[run];
+            values.fill(products / squares);
+            sds.fill(squares.sqrt().recip());
+        }
+        Some(function)
     }
 
     /// The balance in which rows stand out most from its noise.

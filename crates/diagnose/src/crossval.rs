@@ -3,11 +3,12 @@
 //! a cause that only relieves a parameter need not show in the prediction.
 //!
 //! A road that no other run drove has slopes that the others say nothing of: along it they are as unknown as they usually are, and
-//! what is left of the run is judged with that.
+//! what is left of the run is judged with that. So is a run beside a course of its own, or a level, of which others say nothing.
 //!
 //! Source: Stone, *J. R. Stat. Soc. B* 36 (1974) 111, here over whole runs.
 
 use crate::catalogue::Form;
+use crate::events::Event;
 use crate::gram::{Column, Whitened};
 use crate::noise::Noises;
 use crate::profile::Widths;
@@ -94,10 +95,34 @@ impl State<'_> {
         )
     }
 
-    /// The fitted runs whose path no other fitted run drove, where a set holds a function of the path.
+    /// Whether a spell says anything that a set with maps does not say: a stretch that nobody else drove, of a path that others
+    /// drove as well, has slopes of which its map knows nothing, or that the spell drew itself.
+    pub fn is_told_beside(&self, parts: &[Part], event: &Event) -> bool {
+        let Some(mapped) = self.mapped(parts) else { return true };
+        let runs = &self.case.runs;
+        let own = &runs[event.run];
+        let shared = (0..runs.len())
+            .any(|other| other != event.run && self.fit[other] && runs[other].path == own.path);
+        if self.fit[event.run] && !shared {
+            return true;
+        }
+        let time_s = own.measured.trace.time_s();
+        let places = || {
+            let inside = time_s.iter().zip(&own.position_m);
+            inside.filter(|(time, _)| (event.from_s..=event.to_s).contains(*time)).map(|(_, at_m)| *at_m)
+        };
+        let known = places().filter(|at_m| self.is_known(&mapped, event.run, *at_m)).count();
+        2 * known > places().count()
+    }
+
+    /// The fitted runs whose path no other fitted run drove, where a set holds a function of the path, and all where it holds a
+    /// function of each run's own.
     fn alone(&self, parts: &[Part]) -> Vec<bool> {
         let of_place =
             |part: &Part| part.spread.is_some() && self.cause(&part.trial).form == Form::OverPosition;
+        if parts.iter().any(|part| part.spread.is_some() && self.timed(part)) {
+            return self.fit.to_vec();
+        }
         let mapped = parts.iter().any(of_place);
         let runs = &self.case.runs;
         let others = |own: usize| {

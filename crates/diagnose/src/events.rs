@@ -11,6 +11,8 @@ use crate::noise::Noises;
 use crate::recorded::Recorded;
 use crate::rows::{Chunk, Row};
 use crate::search::Found;
+use crate::state::State;
+use crate::trial::Pool;
 use headland_units::constants::STANDARD_GRAVITY_M_S2;
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -103,10 +105,13 @@ pub fn spots(
 }
 
 /// The spells of the motion balance that are more than models of vehicles leave over, where there are some.
-pub fn events(case: &Case, system: &System, found: &Found) -> Vec<Event> {
+pub fn events(case: &Case, (system, pool): (&System, &Pool), found: &Found) -> Vec<Event> {
     let all = joined(spots(case, system, &found.left, &found.noises.1, Stretches::Some));
-    let strong: Vec<Event> =
-        all.into_iter().filter(|event| event.force_n > WEAKEST * weight_n(case, event.run)).collect();
+    let state = State { case, system, pool, fit: &case.fit };
+    let strong = |event: &Event| {
+        event.force_n > WEAKEST * weight_n(case, event.run) && state.is_told_beside(&found.stand.parts, event)
+    };
+    let strong: Vec<Event> = all.into_iter().filter(strong).collect();
     within_runs(case, &strong)
 }
 

@@ -24,6 +24,7 @@ mod contest;
 mod contradiction;
 mod crossval;
 mod curved;
+mod cycles;
 mod elsewhere;
 mod engine_off;
 mod error;
@@ -127,6 +128,9 @@ pub fn diagnose(
     second::opinion(look(options)?, options, look)
 }
 
+/// Brakes are looked for so many times more, once a delay was found.
+const BRAKE_ROUNDS: usize = 2;
+
 fn diagnose_once(
     scenario: &Scenario,
     recording: &Recording,
@@ -158,9 +162,14 @@ fn diagnose_once(
     let mut sound = spells::outside(&case, &logged, &braked);
     let mut look = Look::at(&case, &sound)?;
     look.sensors_first(&mut case)?;
-    if !braked.is_empty() && case.corrections.iter().any(|one| ["latency", "clock_drift"].contains(&one.id)) {
-        // A force that comes late leaves what looks like brakes where it sets in.
-        braked = brakes(&case);
+    // A force that comes late leaves what looks like brakes where it sets in, and a delay is found in rounds.
+    for _ in 0..BRAKE_ROUNDS {
+        let late = case.corrections.iter().any(|one| ["latency", "clock_drift"].contains(&one.id));
+        let anew = if late && !braked.is_empty() { brakes(&case) } else { braked.clone() };
+        if anew == braked {
+            break;
+        }
+        braked = anew;
         sound = spells::outside(&case, &logged, &braked);
         look.again(&mut case, &sound)?;
         look.sensors_first(&mut case)?;

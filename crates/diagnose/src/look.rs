@@ -335,6 +335,7 @@ impl State<'_> {
             let next = judged.filter(able).find(|one| self.sensible(&one.stand));
             let Some(next) = next else { break };
             best = self.spread_finer(&next.stand).unwrap_or(next.stand);
+            best = self.shared_instead(&best).unwrap_or(best);
         }
         self.conclude(best, first, (before.tried.clone(), Vec::new()), needed)
     }

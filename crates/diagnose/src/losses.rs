@@ -84,6 +84,49 @@ pub fn slow_powers(case: &Case, system: &System) -> Vec<Small> {
     LATE.into_iter().map(of).filter(|small| any(&small.column)).collect()
 }
 
+/// A power that is made of a recorded force and a recorded speed: either may be written as a mean over the time since the last
+/// value, half of that late, and the other at once. F v then knows of F a and of v dF/dt, each for half a sample, and no consumer
+/// must have to explain it.
+pub fn half_samples(case: &Case, system: &System) -> Vec<Small> {
+    /// Work that fuel becomes at the wheels, nearly, as a share of its heat.
+    const OF_FUEL: f64 = 0.4;
+    fn force(run: &Recorded) -> Vec<f64> {
+        let known = |force: &f64| if force.is_finite() { *force } else { 0.0 };
+        run.force_n.iter().flatten().map(known).collect()
+    }
+    let step_s = longest_renewal_s(&case.runs, "tractive_force_n")
+        .max(longest_renewal_s(&case.runs, "speed_m_s"))
+        .max(longest_renewal_s(&case.runs, "fuel_rate_kg_s"));
+    let measured = |run: &Recorded| run.measured.trace.get("tractive_force_n").is_some();
+    if !case.runs.iter().all(measured) {
+        return Vec::new();
+    }
+    let of = |id: &'static str, samples: fn(&Recorded) -> Vec<f64>| {
+        let column = system.column(|kind| {
+            let scale = match kind {
+                Kind::Fuel => 1.0 / OF_FUEL,
+                Kind::Shaft => 1.0,
+                _ => return vec![Vec::new(); case.runs.len()],
+            };
+            let of_run = |run: &Recorded| samples(run).into_iter().map(|power| scale * power).collect();
+            case.runs.iter().map(of_run).collect()
+        });
+        Small { id, column, sd: 0.5 * step_s }
+    };
+    let all = [
+        of("speed_half_a_sample", |run| {
+            force(run).iter().zip(&run.acceleration_m_s2).map(|(force, a)| force * a).collect()
+        }),
+        of("force_half_a_sample", |run| {
+            let slope =
+                local_fit(run.measured.trace.time_s(), &force(run), run.measured.how.smoothing_s).slope;
+            slope.iter().zip(&run.motion.value).map(|(slope, speed)| slope * speed).collect()
+        }),
+    ];
+    let any = |column: &Column| column.iter().any(|chunk| chunk.iter().any(|value| *value != 0.0));
+    all.into_iter().filter(|small| any(&small.column)).collect()
+}
+
 /// What a line between fuel and work leaves of an engine whose noise grows with its power: fuel that bends with power and with
 /// power at speed, by what no free parameter could say; `free` are their columns.
 ///

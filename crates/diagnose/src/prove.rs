@@ -63,8 +63,8 @@ pub struct Proof {
     pub noise: f64,
     /// The effects along the runs.
     pub effects: Vec<Reconstructed>,
-    /// The improved scenario: text for each path, the first being that of `scenario.ron`.
-    pub scenarios: Vec<(usize, String)>,
+    /// The improved scenario: each text with the runs that it is of, the first being that of `scenario.ron`.
+    pub scenarios: Vec<(Vec<usize>, String)>,
 }
 
 /// Makes the proof, by the signal of a balance: that of what was found first, where nobody says otherwise.
@@ -106,17 +106,6 @@ pub fn prove(
         let chosen = case.fit.iter().zip(&case.bears).map(|(fit, bears)| *fit == wanted && *bears);
         Errors::over(&errors, &chosen.collect::<Vec<_>>())
     };
-    let mut paths: Vec<usize> = Vec::new();
-    let mut scenarios = Vec::new();
-    for (place, run) in case.runs.iter().enumerate() {
-        if !paths.contains(&run.path) {
-            paths.push(run.path);
-            scenarios.push((run.path, improved(case, refined, place)?.document().text().to_owned()));
-        }
-        if !by_path(refined) {
-            break;
-        }
-    }
     Ok(Proof {
         signal: kind.signal(),
         fitted: over(true).unwrap_or_default(),
@@ -124,8 +113,22 @@ pub fn prove(
         each: errors,
         noise,
         effects,
-        scenarios,
+        scenarios: scenarios(case, refined)?,
     })
+}
+
+/// The improved scenario of every run, each text once; of the first one alone where nothing belongs to a path or to a run.
+fn scenarios(case: &Case, refined: &Refined) -> Result<Vec<(Vec<usize>, String)>, DiagnoseError> {
+    let count = if by_path(refined) { case.runs.len() } else { 1 };
+    let mut all: Vec<(Vec<usize>, String)> = Vec::new();
+    for run in 0..count {
+        let text = improved(case, refined, run)?.document().text().to_owned();
+        match all.iter_mut().find(|(_, known)| *known == text) {
+            Some((runs, _)) => runs.push(run),
+            None => all.push((vec![run], text)),
+        }
+    }
+    Ok(all)
 }
 
 /// Whether anything that was found belongs to one path or to one run.

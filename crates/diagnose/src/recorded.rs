@@ -176,6 +176,7 @@ impl Recorded {
                 (name, self.force_n.clone()?)
             }
             Kind::Shaft => ("engine_torque_n_m", self.engine_w.clone()?),
+            Kind::Battery => ("battery_power_w", trace.get("battery_power_w")?.to_vec()),
             Kind::Fuel => {
                 let name = "fuel_rate_kg_s";
                 (name, trace.get(name)?.iter().map(|rate| FUEL_J_KG * rate).collect())

@@ -155,6 +155,9 @@ pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]
         if let Some(finer) = grown.first().and_then(|top| state.spread_finer(top)) {
             grown[0] = finer;
         }
+        if let Some(shared) = grown.first().and_then(|top| state.shared_instead(top)) {
+            grown[0] = shared;
+        }
         let Some(top) = grown.first() else { break };
         others.extend(grown.iter().cloned());
         if worth(top) > worth(&best) {

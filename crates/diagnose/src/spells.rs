@@ -62,9 +62,9 @@ fn loud(case: &Case, look: &Look) -> Vec<Event> {
     };
     if look.found.accepted.iter().any(timed) {
         let plain = search_without(case, &look.system, &look.pool, &["payload_change"]);
-        events::events(case, &look.system, plain.as_ref().unwrap_or(&look.found))
+        events::events(case, (&look.system, &look.pool), plain.as_ref().unwrap_or(&look.found))
     } else {
-        events::events(case, &look.system, &look.found)
+        events::events(case, (&look.system, &look.pool), &look.found)
     }
 }
 
@@ -132,7 +132,10 @@ impl State<'_> {
         let mut left = start.left.clone();
         for round in 1..=ROUNDS {
             let mut spots = events::spots(self.case, self.system, &left, &noises, Stretches::Every);
-            spots.retain(|spot| spot.event.force_n > FAINT * events::weight_n(self.case, spot.event.run));
+            spots.retain(|spot| {
+                spot.event.force_n > FAINT * events::weight_n(self.case, spot.event.run)
+                    && self.is_told_beside(&start.parts, &spot.event)
+            });
             if spots.is_empty() {
                 break;
             }

@@ -8,10 +8,12 @@
 //! hyperparameters.
 
 use crate::catalogue::{Cause, Form};
+use crate::cycles::Cycles;
 use crate::gram::{Reduced, Whitened};
 use crate::noise::Noises;
 use crate::profile::{Profile, Spread};
 use crate::state::{Chosen, Part, Stand, State};
+use rayon::prelude::*;
 
 /// A function that is correlated for so long stays the same throughout a run [s].
 const BY_RUN_S: f64 = 1e7;
@@ -90,13 +92,28 @@ fn lengths(cause: &Cause, longest: f64) -> Vec<f64> {
 }
 
 impl State<'_> {
-    /// Length and size that make the recordings most likely: the length at the usual size first, then the size.
+    /// Length and size that make the recordings most likely, of a course of time that all runs share as well where each drives in
+    /// its own way: where all drive alike, it would be told from no law.
     pub fn best_spread(
         &self,
         part: &Part,
         stand: &Stand,
         noises: &Noises,
         knots_per_length: f64,
+    ) -> Option<Spread> {
+        let cause = self.cause(&part.trial);
+        let able = cause.is_course() && self.case.cycles == Cycles::Free;
+        let alike: &[bool] = if able { &[false, true] } else { &[false] };
+        self.best_spread_of(part, stand, noises, (knots_per_length, alike))
+    }
+
+    /// The same of courses that are each run's own or that all share: the length at the usual size first, then the size.
+    pub fn best_spread_of(
+        &self,
+        part: &Part,
+        stand: &Stand,
+        noises: &Noises,
+        (knots_per_length, alike): (f64, &[bool]),
     ) -> Option<Spread> {
         let cause = self.cause(&part.trial);
         let spreading = Spreading::of(self, part, &stand.parts, noises)?;
@@ -110,7 +127,6 @@ impl State<'_> {
                 .filter_map(|spread| Some((spreading.evidence(part, &spread)? - choice(&spread), spread)));
             judged.max_by(|one, other| one.0.total_cmp(&other.0))
         };
-        let alike: &[bool] = if cause.is_course() && self.times_shared() { &[false, true] } else { &[false] };
         let of_length = |length: f64| {
             alike.iter().map(move |shared| Spread {
                 length,
@@ -125,6 +141,47 @@ impl State<'_> {
         let sizes = SIZES.iter().map(|share| Spread { size: share * usual, ..spread.clone() }).collect();
         let (other_gain, other) = best_of(sizes)?;
         Some(if other_gain > gain { other } else { spread })
+    }
+
+    /// A set with one course of time for all runs in the place of one that each takes of its own, where that makes the recordings
+    /// more likely; none where nothing is better. What the course of each run left to noise, that of all may follow, so each length
+    /// and each size is asked at the noise that suits it.
+    pub fn shared_instead(&self, stand: &Stand) -> Option<Stand> {
+        if self.case.cycles == Cycles::Apart {
+            return None;
+        }
+        let mut best: Option<Stand> = None;
+        for place in 0..stand.parts.len() {
+            let now = best.as_ref().unwrap_or(stand);
+            let part = &now.parts[place];
+            let cause = self.cause(&part.trial);
+            let own = part.spread.as_ref().filter(|own| own.jumps.is_none() && !own.shared);
+            let (true, Some(own)) = (cause.is_course(), own) else { continue };
+            let usual = Spread { shared: true, size: cause.terms[0].scale, ..own.clone() };
+            let with = |spread: Spread| {
+                let mut parts = now.parts.clone();
+                parts[place].spread = Some(spread);
+                let settled = self.settle(&parts, &now.noises)?;
+                let able =
+                    !self.impossible(&settled.parts, &settled.estimate) && self.functions_possible(&settled);
+                able.then_some(settled)
+            };
+            let likeliest = |spreads: Vec<Spread>| {
+                let settled = spreads.into_par_iter().filter_map(with);
+                settled.max_by(|one, other| one.score.total_cmp(&other.score))
+            };
+            let all = lengths(cause, self.profile(&part.trial, true).longest());
+            let long = likeliest(all.into_iter().map(|length| Spread { length, ..usual.clone() }).collect());
+            let Some(spread) = long.as_ref().and_then(|long| long.parts[place].spread.clone()) else {
+                continue;
+            };
+            let sized = SIZES.iter().map(|share| Spread { size: share * usual.size, ..spread.clone() });
+            let sized = likeliest(sized.collect());
+            let shared = [long, sized].into_iter().flatten();
+            let shared = shared.max_by(|one, other| one.score.total_cmp(&other.score));
+            best = shared.filter(|one| one.score > now.score).or(best);
+        }
+        best
     }
 
     /// A set whose functions of the path are spread more finely than a grid has them, as suits them best beside all the others;

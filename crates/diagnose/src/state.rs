@@ -4,6 +4,7 @@ use crate::Case;
 use crate::abreast::{self, Abreast, Spreaded, clusters};
 use crate::balance::{Kind, System};
 use crate::catalogue::{Cause, Form};
+use crate::cycles::Cycles;
 use crate::gram::{Column, Estimate, Reduced, Whitened};
 use crate::look::MANY_ROWS;
 use crate::noise::Noises;
@@ -214,18 +215,6 @@ impl<'a> State<'a> {
         cause.run.is_some() || part.spread.as_ref().is_some_and(own)
     }
 
-    /// Whether a function of time may be one and the same for all runs: so many were fitted, and their clocks began alike.
-    pub fn times_shared(&self) -> bool {
-        /// The clocks of a cycle that is driven again differ by less [s].
-        const ALIKE_S: f64 = 2.0;
-        let starts = || {
-            self.case.runs.iter().map(|run| run.measured.trace.time_s().first().copied().unwrap_or(f64::NAN))
-        };
-        let first = starts().next().unwrap_or(f64::NAN);
-        self.fit.iter().filter(|fit| **fit).count() > 1
-            && starts().all(|start| (start - first).abs() < ALIKE_S)
-    }
-
     /// Cost of the choice of these causes, and of what no other run shows.
     pub fn choices(&self, parts: &[Part]) -> f64 {
         /// A function of time is shown by no other run, nor is one of a path that only one drove: it takes so much more.
@@ -234,7 +223,11 @@ impl<'a> State<'a> {
         const CONSUMER: f64 = 14.0;
         let battery = self.system.kinds.iter().position(|kind| *kind == Kind::Battery);
         let cost = |part: &Part| {
-            let alone = self.timed(part) || part.spread.is_some() && !self.paths_shared();
+            let own = |spread: &Spread| {
+                let of_place = self.cause(&part.trial).form == Form::OverPosition && !self.paths_shared();
+                of_place || spread.shared && self.case.cycles == Cycles::Same
+            };
+            let alone = self.timed(part) || part.spread.as_ref().is_some_and(own);
             let consumer = part.spread.is_some()
                 && self.id(&part.trial) == "auxiliary_power"
                 && battery.is_some_and(|battery| self.touches(&part.trial, battery));

@@ -59,9 +59,9 @@ mod tests {
     use super::*;
     use headland_trace::Origin;
 
-    /// Ten seconds at 10 Hz, of which every fifth value was measured and 4 kN are let down after four seconds.
+    /// Half a minute at 10 Hz, of which every fifth value was measured and 4 kN are let down after four seconds.
     fn filled() -> (Vec<f64>, Vec<f64>) {
-        let time_s: Vec<f64> = (0..101).map(|index| 0.1 * f64::from(index)).collect();
+        let time_s: Vec<f64> = (0..301).map(|index| 0.1 * f64::from(index)).collect();
         let wobble = |knot: f64| (7.0 * knot).sin();
         let force = |time: f64| {
             let knot = (time / 0.5 + 1e-9).floor();
@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn a_step_leaves_a_twelfth_of_its_square_open() {
         let (time_s, values) = filled();
-        let open = open_between(&unsure(&values, &time_s, 0.5), &time_s, (0.0, 10.0));
+        let open = open_between(&unsure(&values, &time_s, 0.5), &time_s, (0.0, 30.0));
         let expected = (4000.0_f64 * 0.5).powi(2) / 12.0;
         assert!((open / expected - 1.0).abs() < 0.05, "{open} against {expected}");
     }

@@ -107,7 +107,12 @@ impl State<'_> {
                 let beside = Stand { parts: others, ..stand.clone() };
                 let in_time = self.cause(&part.trial).form == Form::OverTime;
                 let fine = if in_time { FINE_IN_TIME } else { FINE };
-                let spread = self.best_spread(&part, &beside, noises, fine);
+                let shared = parts[place].spread.as_ref().is_some_and(|spread| spread.shared);
+                let spread = if shared {
+                    self.best_spread_of(&part, &beside, noises, (fine, &[true]))
+                } else {
+                    self.best_spread(&part, &beside, noises, fine)
+                };
                 parts[place].spread = spread.or(parts[place].spread.clone());
             }
         }

@@ -5,7 +5,7 @@ use crate::balance::{Kind, System, change};
 use crate::catalogue::{Cause, Form};
 use crate::gram::Column;
 use crate::look::MANY_ROWS;
-use crate::losses::{bent_engine, slow_powers, small_losses, torque_errors};
+use crate::losses::{bent_engine, half_samples, slow_powers, small_losses, torque_errors};
 use crate::recorded::Recorded;
 use crate::remembered::Driven;
 use crate::said::Said;
@@ -85,7 +85,12 @@ pub fn nuisance(case: &Case, system: &System) -> Result<Pool, DiagnoseError> {
     }
     let small = small_faults(case, system)?.into_iter().chain(small_losses(case, system));
     let bent = bent_engine(case, system, &pool.columns);
-    for small in small.chain(slow_powers(case, system)).chain(torque_errors(case, system)).chain(bent) {
+    for small in small
+        .chain(slow_powers(case, system))
+        .chain(torque_errors(case, system))
+        .chain(bent)
+        .chain(half_samples(case, system))
+    {
         pool.small.push((small.id, pool.columns.len()));
         pool.columns.push(small.column);
         pool.sd.push(small.sd);

@@ -13,6 +13,8 @@ mod channels;
 mod coasts;
 #[path = "diagnose/engine.rs"]
 mod engine;
+#[path = "diagnose/foretold.rs"]
+mod foretold;
 #[path = "diagnose/ground.rs"]
 mod ground;
 #[path = "diagnose/hurt.rs"]

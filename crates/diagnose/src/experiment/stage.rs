@@ -85,6 +85,7 @@ impl<'a> Stage<'a> {
             registry: case.registry,
             sound: Vec::new(),
             fit: vec![true; runs.len()],
+            cycles: case.cycles,
             bears: vec![true; runs.len()],
             raw: runs.clone(),
             runs,

@@ -5,6 +5,7 @@ use super::null_space::listed;
 use super::{Candidate, TELLS};
 use crate::Case;
 use crate::catalogue::Form;
+use crate::cycles::correlation;
 use crate::profile::Function;
 use crate::refine::{Cured, HALF_95};
 use crate::words::number;
@@ -98,31 +99,4 @@ fn repeated(case: &Case, function: &Function) -> Option<(usize, f64)> {
     let pairs = (0..courses.len()).flat_map(|one| (0..one).map(move |other| (one, other)));
     let least = pairs.map(|(one, other)| correlation(&courses[one], &courses[other])).reduce(f64::min)?;
     least.is_finite().then_some((fitted.len(), least))
-}
-
-fn correlation(one: &[f64], other: &[f64]) -> f64 {
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    let (mean_one, mean_other) = (mean(one), mean(other));
-    let (mut squares, mut others, mut products) = (0.0, 0.0, 0.0);
-    for (one, other) in one.iter().zip(other) {
-        let (one, other) = (one - mean_one, other - mean_other);
-        squares += one * one;
-        others += other * other;
-        products += one * other;
-    }
-    products / (squares * others).sqrt()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_rises_with_the_other_is_alike_and_what_falls_is_not() {
-        let one: Vec<f64> = (0..20).map(f64::from).collect();
-        let doubled: Vec<f64> = one.iter().map(|value| 2.0 * value + 3.0).collect();
-        let falling: Vec<f64> = one.iter().map(|value| -value).collect();
-        assert!((correlation(&one, &doubled) - 1.0).abs() < 1e-12);
-        assert!((correlation(&one, &falling) + 1.0).abs() < 1e-12);
-    }
 }

@@ -55,6 +55,7 @@ pub fn report(
         verdict(&findings, &fit, &Doubts { timed: timed(refined), slight, strain })
     };
     notes.extend(remarks(case, &found.unproven));
+    notes.extend(words::whose(case, &proof.scenarios));
     let mut null_space = refined.null_space.clone();
     for finding in &findings {
         for rival in &finding.indistinguishable_from {
@@ -81,6 +82,7 @@ pub fn report(
         withheld: beside.withheld.as_deref(),
         null_space: &refined.null_space,
         own_spells: beside.events.iter().any(|event| !case.fit[event.run]),
+        own_levels: refined.causes.iter().any(|cured| cured.cause.by_run),
     };
     let diagnosis = Diagnosis {
         schema: "headland.diagnosis/1",
@@ -131,7 +133,7 @@ pub fn inconclusive(
         each: Vec::new(),
         noise: f64::NAN,
         effects: Vec::new(),
-        scenarios: vec![(0, case.study.scenario().document().text().to_owned())],
+        scenarios: vec![(Vec::new(), case.study.scenario().document().text().to_owned())],
     });
     let mut notes = case.study.notes.clone();
     notes.extend(remarks(case, &[]));

@@ -30,6 +30,8 @@ pub struct Told<'a> {
     pub null_space: &'a [String],
     /// Whether runs that were held out have spells of their own, which they themselves tell.
     pub own_spells: bool,
+    /// Whether anything that was found has a level of its own in each run.
+    pub own_levels: bool,
 }
 
 /// The paragraph: what was looked at, what fails first, what was left out, what it explains, what cannot be told.
@@ -187,10 +189,12 @@ fn proof(told: &Told) -> String {
     } else {
         ""
     };
-    let own = if told.own_spells && told.fit.held_out.is_some() {
-        "; when and how strong its spells are, such a run tells itself, which could not be foreseen"
-    } else {
-        ""
+    let own = match told.fit.held_out {
+        Some(_) if told.own_spells => {
+            "; when and how strong its spells are, such a run tells itself, which could not be foreseen"
+        }
+        Some(_) if told.own_levels => "; its own level such a run tells by its first half",
+        _ => "",
     };
     format!("{text}{sensor}{doubt}{own}.")
 }

@@ -7,6 +7,7 @@ mod place;
 pub use answer::{Told, answer, inconclusive};
 pub use number::{number, plain};
 
+use crate::Case;
 use crate::balance::Kind;
 use crate::catalogue::{Cause, Class};
 use crate::refine::{Cured, HALF_95};
@@ -26,6 +27,17 @@ pub fn listed(all: &[String]) -> String {
         [one] => one.clone(),
         [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
+}
+
+/// Whose run each improved scenario is of, where there are several.
+pub fn whose(case: &Case, scenarios: &[(Vec<usize>, String)]) -> Option<String> {
+    let named = |(place, (runs, _)): (usize, &(Vec<usize>, String))| {
+        let runs: Vec<String> = runs.iter().map(|run| case.runs[*run].measured.id.clone()).collect();
+        let file = if place == 0 { "scenario.ron".to_owned() } else { format!("scenario_{}.ron", place + 1) };
+        format!("{file} is of {}", listed(&runs))
+    };
+    let told: Vec<String> = scenarios.iter().enumerate().map(named).collect();
+    (told.len() > 1).then(|| format!("{}.", told.join("; ")))
 }
 
 /// The same of names, each once.

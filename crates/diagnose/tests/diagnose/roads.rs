@@ -8,7 +8,7 @@ use headland_recording::Recording;
 use headland_trace::Origin;
 
 /// A tractor that drives a kilometre and more at several speeds.
-fn drive(effects: &str) -> String {
+pub fn drive(effects: &str) -> String {
     let level =
         |speed_m_s: u32| format!("Reach(speed_m_s: {speed_m_s}, acceleration_m_s2: 0.5), Hold(for_s: 40), ");
     let cycle: String = [8, 4, 9, 5, 7].map(level).concat();

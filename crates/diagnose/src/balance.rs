@@ -264,9 +264,9 @@ impl System {
         let of_motion = self.is_of_motion();
         let open = |kind: Kind| -> Vec<Vec<f64>> {
             let of_run = |run: &Recorded| match run.driven(kind) {
-                // A power that is made of motion knows of a step only as its speed was smoothed.
+                // What is made of motion knows of a step of the shaft only as its speed was smoothed; fuel has noise of its own there.
                 Some((values, step_s)) => {
-                    let smoothed_s = if kind.is_power() && of_motion && step_s > SLOW_S {
+                    let smoothed_s = if kind == Kind::Shaft && of_motion && step_s > SLOW_S {
                         run.measured.how.smoothing_s
                     } else {
                         0.0

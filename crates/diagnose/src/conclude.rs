@@ -269,11 +269,12 @@ impl State<'_> {
             {
                 let variance = held.noises.each[chunk.balance].sd().powi(2);
                 let early = chunk.rows.iter().take_while(|row| row.time_s < middle_s).count();
-                for row in 0..early {
+                let told = signature[index].iter().zip(&held.left[index]).enumerate().take(early);
+                for (row, (signature, left)) in told {
                     let loud = chunk.loudness.get(row).copied().unwrap_or(1.0);
-                    let weight = signature[index][row] / (variance * loud * loud);
-                    products += weight * held.left[index][row];
-                    squares += weight * signature[index][row];
+                    let weight = signature / (variance * loud * loud);
+                    products += weight * left;
+                    squares += weight * signature;
                 }
             }
             let (values, sds) = &mut function.values[run];

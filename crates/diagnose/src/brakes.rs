@@ -7,7 +7,7 @@
 //! (Huber and Ronchetti, *Robust Statistics* (2009), chapter 5).
 
 use crate::Case;
-use crate::events::{BRAKED_M_S2, Event};
+use crate::events::{BRAKED_M_S2, Event, OPEN};
 use crate::places::stretch;
 use crate::recorded::{Recorded, SLOWEST_M_S};
 use crate::said::Said;
@@ -69,6 +69,7 @@ pub fn brakes(case: &Case, sound: &[Vec<bool>]) -> Vec<Event> {
             .into_iter()
             .map(|(from, to)| event(&case.runs[number], number, excess, (from, to), sd_n))
             .filter(|event| event.force_n > SIGMAS * event.sd_n)
+            .filter(|event| event.force_n > OPEN * case.runs[number].open_n(event.from_s, event.to_s))
             .collect::<Vec<Event>>()
     };
     let all: Vec<Event> = excess.iter().enumerate().flat_map(of_run).collect();
@@ -246,7 +247,7 @@ fn event(run: &Recorded, number: usize, excess: &[f64], (from, to): (usize, usiz
     let force_n = sum / count.max(1) as f64;
     let lasted_s = time_s[to] - time_s[from];
     // As many values that know nothing of each other as there are windows.
-    let sd_n = (sd_n / (lasted_s / WINDOW_S).max(1.0).sqrt()).hypot(run.open_n(time_s[from], time_s[to]));
+    let sd_n = sd_n / (lasted_s / WINDOW_S).max(1.0).sqrt();
     let gain = 0.5 * (force_n / sd_n).powi(2);
     Event { run: number, from_s: time_s[from], to_s: time_s[to], force_n, sd_n, gain }
 }

@@ -45,8 +45,9 @@ const MOST: usize = 6;
 /// Recordings begin and end while something is done: what lasts less than this at an edge is told of no vehicle [s].
 const EDGE_S: f64 = 0.5;
 const SHORT_S: f64 = 3.0;
-/// A spell is so many times what steps of the recorded force between two samples leave open, in standard deviations.
-const OPEN: f64 = 6.0;
+/// A spell is so many times what steps of the recorded force between two samples leave open, in standard deviations: a step at an
+/// end of its interval is 1.7 of them off.
+pub const OPEN: f64 = 2.5;
 /// What covers more than this share of a run is no spell in it.
 const MOST_OF_A_RUN: f64 = 0.5;
 /// A braked vehicle slows down at least like this [m/s²].

@@ -7,6 +7,7 @@
 //! Source: Rasmussen and Williams, *Gaussian Processes for Machine Learning* (2006), section 5.4.1, the evidence over
 //! hyperparameters.
 
+use crate::balance::Kind;
 use crate::catalogue::{Cause, Form};
 use crate::cycles::Cycles;
 use crate::gram::{Reduced, Whitened};
@@ -102,7 +103,9 @@ impl State<'_> {
         knots_per_length: f64,
     ) -> Option<Spread> {
         let cause = self.cause(&part.trial);
-        let able = cause.is_course() && self.case.cycles == Cycles::Free;
+        // Powers alone hardly tell a load that comes from a consumer.
+        let told = self.system.has(Kind::Motion) || cause.id == "auxiliary_power";
+        let able = cause.is_course() && told && self.case.cycles == Cycles::Free;
         let alike: &[bool] = if able { &[false, true] } else { &[false] };
         self.best_spread_of(part, stand, noises, (knots_per_length, alike))
     }

@@ -278,13 +278,12 @@ impl System {
             runs.iter().map(of_run).collect()
         };
         for (number, kind) in self.kinds.iter().enumerate() {
-            let usual = self.quiet_variance(number, &self.residual, fit);
-            let (Some(usual), true) =
-                (usual.filter(|usual| *usual > 0.0), *kind == Kind::Motion || kind.is_power())
-            else {
-                continue;
-            };
             let open = open(*kind);
+            if open.iter().all(Vec::is_empty) {
+                continue;
+            }
+            let usual = self.quiet_variance(number, &self.residual, fit);
+            let Some(usual) = usual.filter(|usual| *usual > 0.0) else { continue };
             for chunk in self.chunks.iter_mut().filter(|chunk| chunk.balance == number) {
                 let time_s = runs[chunk.run].measured.trace.time_s();
                 let shares: Vec<f64> = chunk

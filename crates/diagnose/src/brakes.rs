@@ -65,11 +65,15 @@ pub fn brakes(case: &Case, sound: &[Vec<bool>]) -> Vec<Event> {
     let usual_n = (SIGMAS * sd_n).max(driven_n);
     let of_run = |(number, excess): (usize, &Option<Vec<f64>>)| {
         let excess = excess.as_deref().unwrap_or(&[]);
+        let (time_s, open) = (case.runs[number].measured.trace.time_s(), case.runs[number].open());
+        let open_n = |event: &Event| {
+            open.as_ref().map_or(0.0, |open| open.spell_n(time_s, (event.from_s, event.to_s)))
+        };
         stretches(&case.runs[number], &case.nominal[number], excess, usual_n)
             .into_iter()
             .map(|(from, to)| event(&case.runs[number], number, excess, (from, to), sd_n))
             .filter(|event| event.force_n > SIGMAS * event.sd_n)
-            .filter(|event| event.force_n > OPEN * case.runs[number].open_n(event.from_s, event.to_s))
+            .filter(|event| event.force_n > OPEN * open_n(event))
             .collect::<Vec<Event>>()
     };
     let all: Vec<Event> = excess.iter().enumerate().flat_map(of_run).collect();

@@ -123,9 +123,8 @@ impl State<'_> {
             let Some(gains) = self.predicted(&best) else { return Some((best, out)) };
             let timed = |place: &usize| {
                 let part = &best.parts[*place];
-                let form = self.cause(&part.trial).form;
-                let course = form == Form::OverTime && part.spread.is_none();
-                self.timed(part) || course || form == Form::OverPosition && !self.paths_shared()
+                let of_place = self.cause(&part.trial).form == Form::OverPosition;
+                self.timed(part) || of_place && !self.paths_shared()
             };
             let worst = (0..gains.len())
                 .filter(|place| !timed(place))

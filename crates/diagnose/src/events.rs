@@ -12,6 +12,7 @@ use crate::recorded::Recorded;
 use crate::rows::{Chunk, Row};
 use crate::search::Found;
 use crate::state::State;
+use crate::steps::Open;
 use crate::trial::Pool;
 use headland_units::constants::STANDARD_GRAVITY_M_S2;
 use nalgebra::DVector;
@@ -124,9 +125,14 @@ pub fn weight_n(case: &Case, run: usize) -> f64 {
 
 /// Of spells those that lie well within their run, do not cover most of it, and are no step of the force between two samples.
 pub fn within_runs(case: &Case, events: &[Event]) -> Vec<Event> {
+    let of_run = |run: &Recorded| {
+        if events.iter().any(|event| event.run == run.number) { run.open() } else { None }
+    };
+    let open: Vec<Option<Open>> = case.runs.iter().map(of_run).collect();
     let spell = |event: &&Event| {
-        let open_n = case.runs[event.run].open_n(event.from_s, event.to_s);
         let time_s = case.runs[event.run].measured.trace.time_s();
+        let open = open[event.run].as_ref();
+        let open_n = open.map_or(0.0, |open| open.spell_n(time_s, (event.from_s, event.to_s)));
         let (first_s, last_s) = (time_s[0], time_s[time_s.len() - 1]);
         let at_an_edge = event.from_s < first_s + EDGE_S || event.to_s > last_s - EDGE_S;
         let own = events.iter().filter(|other| other.run == event.run);

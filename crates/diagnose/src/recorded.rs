@@ -2,7 +2,7 @@
 
 use crate::balance::{FUEL_J_KG, Kind};
 use crate::standin::Prepared;
-use crate::steps::{open_between, step_s, unsure};
+use crate::steps::{Open, step_s};
 use headland_calibrate::statistics::{quantile_of_sorted, sorted};
 use headland_calibrate::study::{Measured, Study};
 use headland_plugin::Shaft;
@@ -156,13 +156,10 @@ fn without_leaps(trace: &Trace) -> Trace {
 }
 
 impl Recorded {
-    /// Standard deviation of the mean force of a spell by steps of the recorded force in it or at its edges, of which nobody knows
-    /// when between two samples they were [N].
-    pub fn open_n(&self, from_s: f64, to_s: f64) -> f64 {
-        let Some((force_n, step_s)) = self.driven(Kind::Motion) else { return 0.0 };
-        let time_s = self.measured.trace.time_s();
-        let open = unsure(&force_n, time_s, step_s);
-        open_between(&open, time_s, (from_s - step_s, to_s + step_s)).sqrt() / (to_s - from_s).max(step_s)
+    /// What steps of its recorded force between two samples leave open; none where no force is known.
+    pub fn open(&self) -> Option<Open> {
+        let (force_n, step_s) = self.driven(Kind::Motion)?;
+        Some(Open::of(&force_n, self.measured.trace.time_s(), step_s))
     }
 
     /// What was measured of a balance that is driven, in its unit, and the time from one value to the next [s]; none where that

@@ -27,8 +27,9 @@ const SIZES: [f64; 4] = [0.1, 0.3, 3.0, 10.0];
 struct Spreading<'s, 'a> {
     state: &'s State<'a>,
     whitened: Whitened,
-    /// The function of each run, and the one that all share.
-    profiles: [Profile<'a>; 2],
+    profile: Profile<'a>,
+    /// The function that all runs share, where it is asked for.
+    shared: Option<Profile<'a>>,
     others: &'s [Part],
     /// Products without the other functions, where those share no rows with it.
     without: Option<Reduced>,
@@ -37,7 +38,12 @@ struct Spreading<'s, 'a> {
 }
 
 impl<'s, 'a> Spreading<'s, 'a> {
-    fn of(state: &'s State<'a>, part: &Part, others: &'s [Part], noises: &Noises) -> Option<Self> {
+    fn of(
+        state: &'s State<'a>,
+        part: &Part,
+        (others, alike): (&'s [Part], &[bool]),
+        noises: &Noises,
+    ) -> Option<Self> {
         let mut parts = others.to_vec();
         parts.push(part.clone());
         let Chosen { columns, sd, places, .. } = state.chosen(&parts);
@@ -49,8 +55,9 @@ impl<'s, 'a> Spreading<'s, 'a> {
         } else {
             None
         };
-        let profiles = [false, true].map(|shared| state.profile(&part.trial, shared));
-        Some(Self { state, whitened, profiles, others, without, places, sd })
+        let shared = alike.contains(&true).then(|| state.profile(&part.trial, true));
+        let profile = state.profile(&part.trial, false);
+        Some(Self { state, whitened, profile, shared, others, without, places, sd })
     }
 
     /// ln p of the recordings with the function spread like this, but for what does not go with the spread.
@@ -58,13 +65,8 @@ impl<'s, 'a> Spreading<'s, 'a> {
         let (state, chunks) = (self.state, &self.state.system.chunks);
         let reduced = if let Some(without) = &self.without {
             let mut reduced = without.clone();
-            self.profiles[usize::from(spread.shared)].take(
-                &self.whitened,
-                chunks,
-                state.fit,
-                spread,
-                &mut reduced,
-            )?;
+            let profile = if spread.shared { self.shared.as_ref()? } else { &self.profile };
+            profile.take(&self.whitened, chunks, state.fit, spread, &mut reduced)?;
             reduced
         } else {
             let mut profiles = state.profiles(self.others);
@@ -119,7 +121,7 @@ impl State<'_> {
         (knots_per_length, alike): (f64, &[bool]),
     ) -> Option<Spread> {
         let cause = self.cause(&part.trial);
-        let spreading = Spreading::of(self, part, &stand.parts, noises)?;
+        let spreading = Spreading::of(self, part, (&stand.parts, alike), noises)?;
         let usual = cause.terms[0].scale;
         let choice = |spread: &Spread| {
             self.choices(&[Part { spread: Some(spread.clone()), trial: part.trial.clone() }])
@@ -139,7 +141,7 @@ impl State<'_> {
                 shared: *shared,
             })
         };
-        let possible = lengths(cause, spreading.profiles[0].longest());
+        let possible = lengths(cause, spreading.profile.longest());
         let (gain, spread) = best_of(possible.into_iter().flat_map(of_length).collect())?;
         let sizes = SIZES.iter().map(|share| Spread { size: share * usual, ..spread.clone() }).collect();
         let (other_gain, other) = best_of(sizes)?;
@@ -204,12 +206,14 @@ impl State<'_> {
             let (Form::OverPosition, Some(spread)) = (cause.form, steady) else { continue };
             let mut others = parts.clone();
             let part = others.remove(place);
-            let Some(spreading) = Spreading::of(self, &part, &others, &stand.noises) else { continue };
+            let Some(spreading) = Spreading::of(self, &part, (&others, &[false]), &stand.noises) else {
+                continue;
+            };
             // Side by side with another function it has no band, and every step takes long.
             if spreading.without.is_none() {
                 continue;
             }
-            let longest = spreading.profiles[0].longest();
+            let longest = spreading.profile.longest();
             let shortest = lengths(cause, longest).into_iter().fold(longest, f64::min);
             let [least, .., most] = SIZES.map(|share| share * cause.terms[0].scale);
             let evidence = |length: f64, size: f64| {

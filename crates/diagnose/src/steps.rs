@@ -49,9 +49,28 @@ pub fn unsure(values: &[f64], time_s: &[f64], step_s: f64) -> Vec<f64> {
 }
 
 /// Variance of the impulse that is not known between two times [unit² s²].
-pub fn open_between(open: &[f64], time_s: &[f64], (from_s, to_s): (f64, f64)) -> f64 {
+fn open_between(open: &[f64], time_s: &[f64], (from_s, to_s): (f64, f64)) -> f64 {
     let steps = open.iter().zip(time_s.windows(2)).filter(|(_, step)| (from_s..=to_s).contains(&step[0]));
     steps.map(|(open, step)| open * (step[1] - step[0])).sum()
+}
+
+/// What is open of the force of a run.
+pub struct Open {
+    each: Vec<f64>,
+    step_s: f64,
+}
+
+impl Open {
+    /// Of a force whose values come so far apart.
+    pub fn of(force_n: &[f64], time_s: &[f64], step_s: f64) -> Self {
+        Self { each: unsure(force_n, time_s, step_s), step_s }
+    }
+
+    /// Standard deviation of the mean force of a spell by steps of the recorded force in it or at its edges [N].
+    pub fn spell_n(&self, time_s: &[f64], (from_s, to_s): (f64, f64)) -> f64 {
+        let around = (from_s - self.step_s, to_s + self.step_s);
+        open_between(&self.each, time_s, around).sqrt() / (to_s - from_s).max(self.step_s)
+    }
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@
 #![allow(clippy::result_large_err, reason = "a diagnosis fails once, not in a loop")]
 
 mod abreast;
+mod answering;
 mod balance;
 mod band;
 mod begun;

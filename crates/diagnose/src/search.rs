@@ -288,6 +288,7 @@ impl State<'_> {
         sizes.iter().all(heard)
             && !pairs.into_iter().any(|(one, other)| cancels(one, other))
             && stand.parts.iter().all(|part| self.beyond_the_sensor(stand, part))
+            && self.needs_no_answer(stand)
     }
 
     /// Whether a sensor's fault is one that anybody would mind.

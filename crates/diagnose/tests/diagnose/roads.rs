@@ -77,6 +77,25 @@ fn of_many_days(days: u32, registry: &Registry, hidden: &dyn Fn(u32) -> String) 
     all.unwrap()
 }
 
+/// So many drives with what is hidden in each, by speed and by force with so much noise; the last is held out.
+fn of_runs(runs: u32, noise_n: f64, registry: &Registry, hidden: &dyn Fn(u32) -> String) -> Recording {
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "tractive_force_n" => value + noise_n * draws.normal(),
+        _ => value,
+    };
+    let channels = ["speed_m_s", "tractive_force_n"];
+    let mut all = None;
+    for number in 0..runs {
+        let sensor = (700 + u64::from(number), &noisy as _);
+        let mut recording = recording_of_scenario(&drive(&hidden(number)), registry, &channels, sensor);
+        let mut run = recording.runs.remove(0);
+        (run.id, run.path, run.held_out) = (format!("r{number}"), None, number + 1 == runs);
+        all.get_or_insert(recording).runs.push(run);
+    }
+    all.unwrap()
+}
+
 /// Tyres that warm up from the temperature outside are one cause, and no oil beside the cold.
 #[test]
 fn tyres_that_warm_up_from_a_cold_day_are_one_cause() {
@@ -115,23 +134,11 @@ fn a_resistance_that_rises_in_the_cold_is_told_beside_the_slopes_of_many_roads()
 fn a_pull_of_single_runs_is_told_beside_a_load_that_comes() {
     const FILLS: &str = "payload_change(times_s: [0, 40, 150, 300], masses_kg: [0, 0, 4000, 4000])";
     let registry = headland_stock::registry();
-    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
-        "speed_m_s" => value + 0.02 * draws.normal(),
-        "tractive_force_n" => value + 400.0 * draws.normal(),
-        _ => value,
-    };
-    let channels = ["speed_m_s", "tractive_force_n"];
-    let mut all: Option<Recording> = None;
-    for number in 0..6_u32 {
+    let recording = of_runs(6, 400.0, &registry, &|number| {
         let pulls = if number % 2 == 0 { ", drawbar_load(force_n: 4000, from_s: 95, to_s: 140)" } else { "" };
-        let hidden = drive(&format!("{FILLS}{pulls}"));
-        let mut recording =
-            recording_of_scenario(&hidden, &registry, &channels, (700 + u64::from(number), &noisy));
-        let mut run = recording.runs.remove(0);
-        (run.id, run.path, run.held_out) = (format!("r{number}"), None, number == 5);
-        all.get_or_insert(recording).runs.push(run);
-    }
-    let found = found_of_scenario(&drive(""), &all.unwrap(), &Options::default(), &registry).unwrap();
+        format!("{FILLS}{pulls}")
+    });
+    let found = found_of_scenario(&drive(""), &recording, &Options::default(), &registry).unwrap();
     let said = &found.diagnosis;
     let [one, other] = &said.findings[..] else { panic!("{}", said.answer) };
     let (load, pull) = if one.id == "payload_change" { (one, other) } else { (other, one) };
@@ -140,4 +147,14 @@ fn a_pull_of_single_runs_is_told_beside_a_load_that_comes() {
     let pulled = |place: &headland_diagnose::Interval| ["r0", "r2", "r4"].contains(&place.run.as_str());
     let (inside, all) = (pull.stretches.iter().filter(|place| pulled(place)).count(), pull.stretches.len());
     assert!(inside >= 6 && all <= inside + 1, "{:?}", pull.stretches);
+}
+
+/// A governor answers each slope with force: what is in proportion to it would take a share of them, as a loss of the drive does.
+#[test]
+fn force_that_answers_slopes_is_no_loss_of_the_drive() {
+    let registry = headland_stock::registry();
+    let recording = of_runs(6, 40.0, &registry, &|number| road(u64::from(number)));
+    let found = found_of_scenario(&drive(""), &recording, &Options::default(), &registry).unwrap();
+    let told: Vec<&str> = found.diagnosis.findings.iter().map(|one| one.id.as_str()).collect();
+    assert!(told == ["grade"] || told == ["soft_ground"], "{}", found.diagnosis.answer);
 }

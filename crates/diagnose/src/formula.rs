@@ -317,7 +317,7 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     };
     // Where no force was measured a power is made of the acceleration already.
     let known = || case.runs.iter().all(Recorded::force_is_known);
-    let acceleration = of(&|run| run.acceleration_m_s2.clone()).filter(|_| kind.is_power() && known());
+    let acceleration = of(&accelerated_m_s2).filter(|_| kind.is_power() && known());
     let engine_speed = channel("engine_speed_rad_s").filter(|runs| kind.is_power() && tells_more(case, runs));
     let slope = Some(case.nominal.iter().map(|said| said.sin_slope.clone()).collect());
     let offered: [Offered; 14] = [
@@ -346,6 +346,22 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
         })
     };
     offered.into_iter().filter_map(variable).collect()
+}
+
+/// Acceleration of a run [m/s²]: as the force makes it, which shows what is sudden, and over longer as the speed does. What the
+/// nominal parameters are wrong by would else be an acceleration wherever a speed is held, and tell of that speed.
+fn accelerated_m_s2(run: &Recorded) -> Vec<f64> {
+    /// Beside the median over so long to either side nothing is sudden [s].
+    const AROUND_S: f64 = 3.0;
+    let (time_s, made) = (run.measured.trace.time_s(), &run.acceleration_m_s2);
+    let apart: Vec<f64> = run.motion.slope.iter().zip(made).map(|(recorded, made)| recorded - made).collect();
+    let lasting = |at: &f64| {
+        let from = time_s.partition_point(|time| *time < at - AROUND_S);
+        let to = time_s.partition_point(|time| *time <= at + AROUND_S);
+        let near: Vec<f64> = apart[from..to].iter().copied().filter(|apart| apart.is_finite()).collect();
+        if near.is_empty() { 0.0 } else { median(&near) }
+    };
+    made.iter().zip(time_s).map(|(made, at)| made + lasting(at)).collect()
 }
 
 /// Whether courses point to more than one direction and its opposite: of those a heading says no more than which of the two it is.

@@ -109,6 +109,7 @@ pub use report::{
 pub(crate) use balance::System;
 pub(crate) use case::Case;
 
+use events::Event;
 use headland_plugin::Registry;
 use headland_recording::Recording;
 use headland_scenario::Scenario;
@@ -160,7 +161,12 @@ fn diagnose_once(
     let brakes =
         |case: &Case| if case.wanted("braking") { brakes::brakes(case, &logged) } else { Vec::new() };
     let mut braked = brakes(&case);
-    let mut sound = spells::outside(&case, &logged, &braked);
+    let unbraked = |case: &Case, braked: &[Event]| {
+        let mut sound = spells::outside(case, &logged, braked);
+        regeneration::leave_out(case, braked, &mut sound);
+        sound
+    };
+    let mut sound = unbraked(&case, &braked);
     let mut look = Look::at(&case, &sound)?;
     look.sensors_first(&mut case)?;
     // A force that comes late leaves what looks like brakes where it sets in, and a delay is found in rounds.
@@ -171,7 +177,7 @@ fn diagnose_once(
             break;
         }
         braked = anew;
-        sound = spells::outside(&case, &logged, &braked);
+        sound = unbraked(&case, &braked);
         look.again(&mut case, &sound)?;
         look.sensors_first(&mut case)?;
     }

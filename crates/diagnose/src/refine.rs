@@ -163,10 +163,13 @@ pub fn refine(
     if refined.causes.iter().any(|cured| cured.function().is_some()) {
         return Ok(refined);
     }
-    // The constants of a law are what its search made of them. No scenario has the small losses that were free beside it.
+    // No scenario has the small losses that were free beside what was found.
+    let lossless = without_losses(pool, found);
+    // The constants of a law are what its search made of them.
     if refined.causes.iter().any(|cured| cured.cause.form == Form::Law) {
-        return Ok(without_losses(pool, found).map_or(refined, |found| linear(case, pool, &found, &beyond)));
+        return Ok(lossless.map_or(refined, |found| linear(case, pool, &found, &beyond)));
     }
+    let found = lossless.as_ref().unwrap_or(found);
     let mut new: Vec<Cured> = physics.iter().map(|place| refined.causes[*place].clone()).collect();
     for cured in new.iter_mut().filter(|cured| is_whole(&cured.cause)) {
         mirror::lean(cured.values.iter_mut().map(|(value, _)| value));

@@ -49,6 +49,18 @@ pub fn limit_w(case: &Case, events: &[Event]) -> Option<(f64, f64)> {
     limit_of(&within, &outside, greatest_w, events.len())
 }
 
+/// Leaves out what was recorded at the limit: brakes too weak to be told may have held back there.
+pub fn leave_out(case: &Case, events: &[Event], sound: &mut [Vec<bool>]) {
+    let Some((limit_w, _)) = limit_w(case, events) else { return };
+    for (run, sound) in case.runs.iter().zip(sound) {
+        let force = run.force_n.as_deref().unwrap_or(&[]);
+        for ((sound, force), speed) in sound.iter_mut().zip(force).zip(&run.motion.value) {
+            let at_limit = -force * speed >= (1.0 - SAME) * limit_w;
+            *sound &= !at_limit;
+        }
+    }
+}
+
 /// The limit of powers that are given back [W] while somebody brakes in so many spells, and at other times, by a drive that
 /// drives with so much at most.
 fn limit_of(within: &[f64], outside: &[f64], greatest_w: f64, spells: usize) -> Option<(f64, f64)> {

@@ -306,12 +306,18 @@ fn is_map(law: &Law, target: Target, placed: bool) -> bool {
     !alone && terms.iter().any(|term| only(term))
 }
 
-/// Whether a term of a law may as well be none: several that take each other back say nothing of any.
+/// Whether a term of a law may as well be none: several that take each other back say nothing of any. Nor does one that goes with
+/// the sign of an acceleration: where a speed is held, the noise of the force decides on it, and that noise is in the power as well.
 fn is_undetermined(law: &Law) -> bool {
+    const SCALE: &str = "acceleration";
     let nothing = |constant: &headland_symbolic::Constant| {
         constant.sd.is_some_and(|sd| constant.value.abs() < crate::refine::HALF_95 * sd)
     };
-    law.constants.iter().any(|constant| constant.is_amplitude() && nothing(constant))
+    let decides = |constant: &headland_symbolic::Constant| {
+        constant.is_amplitude()
+            || constant.name.starts_with(SCALE) && law.text.contains("tanh(acceleration /")
+    };
+    law.constants.iter().any(|constant| decides(constant) && nothing(constant))
 }
 
 impl State<'_> {

@@ -158,3 +158,41 @@ fn force_that_answers_slopes_is_no_loss_of_the_drive() {
     let told: Vec<&str> = found.diagnosis.findings.iter().map(|one| one.id.as_str()).collect();
     assert!(told == ["grade"] || told == ["soft_ground"], "{}", found.diagnosis.answer);
 }
+
+/// A drive that gives back no more than 40 kW, whose efficiency is stated too low: brakes that help a little leave no loss of the
+/// drive, and losses that no scenario has do not stand in the way of what is stated of it.
+#[test]
+fn brakes_beside_a_limit_leave_nothing_behind() {
+    const EFFICIENCY: f64 = 0.925;
+    let registry = headland_stock::registry();
+    let known = |efficiency: f64, effects: &str| {
+        let free = r#"(name: "vehicle.driveline.drive_efficiency", sd: 0.015, bounds: (0.6, 1.0)),"#;
+        drive(effects)
+            .replace("drive_efficiency: 0.9,", &format!("drive_efficiency: {efficiency},"))
+            .replace("free: [", &format!("free: [{free}"))
+            .replace("speed_m_s: 4, acceleration_m_s2: 0.5", "speed_m_s: 4, acceleration_m_s2: 1.6")
+            .replace("speed_m_s: 5, acceleration_m_s2: 0.5", "speed_m_s: 5, acceleration_m_s2: 0.8")
+    };
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.01 * draws.normal(),
+        "motor_torque_n_m" => value + 0.5 * draws.normal(),
+        "battery_voltage_v" | "battery_current_a" => value + 0.3 * draws.normal(),
+        _ => value,
+    };
+    let channels = ["speed_m_s", "motor_torque_n_m", "battery_voltage_v", "battery_current_a"];
+    let mut all: Option<Recording> = None;
+    for number in 0..4 {
+        let sensor = (40 + number, &noisy as _);
+        let hidden = known(EFFICIENCY, "regeneration_limit(power_w: 40000)");
+        let mut recording = recording_of_scenario(&hidden, &registry, &channels, sensor);
+        let mut run = recording.runs.remove(0);
+        (run.id, run.path, run.held_out) = (format!("r{number}"), None, number == 3);
+        all.get_or_insert(recording).runs.push(run);
+    }
+    let found = found_of_scenario(&known(0.9, ""), &all.unwrap(), &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    let told: Vec<&str> = said.findings.iter().map(|one| one.id.as_str()).collect();
+    assert_eq!(told, ["regeneration_limit"], "{}", said.answer);
+    let efficiency = said.calibrated.iter().find(|one| one.name == "drive_efficiency").unwrap();
+    assert!((efficiency.value - EFFICIENCY).abs() < 0.005, "{efficiency:?}");
+}

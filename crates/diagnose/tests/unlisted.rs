@@ -504,7 +504,8 @@ fn a_fan_on_the_crankshaft_is_found_by_the_speed_of_the_engine() {
     let registry = headland_stock::registry();
     let noisy = speed_and_fuel(5e-5);
     let channels = ["speed_m_s", "tractive_force_n", "engine_speed_rad_s", "fuel_rate_kg_s"];
-    let recording = recording_of_scenario(&kept(&hidden), &registry, &channels, (8, &noisy));
+    let mut recording = recording_of_scenario(&kept(&hidden), &registry, &channels, (8, &noisy));
+    recording.runs.remove(2);
     let found = found_of_scenario(&kept(""), &recording, &Options::default(), &registry).unwrap();
     let said = &found.diagnosis;
     assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);

@@ -102,7 +102,9 @@ impl State<'_> {
             if self.system.kind(chunk) != Kind::Motion {
                 return DVector::zeros(rows.len());
             }
-            let reach = ((AROUND_S / self.system.blocks_s[chunk.balance]).round() as usize).max(1);
+            let block_s = self.system.blocks_s[chunk.balance];
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small and positive")]
+            let reach = ((AROUND_S / block_s).round() as usize).max(1);
             let mean = |row: usize| {
                 let (first, last) = (row.saturating_sub(reach), (row + reach).min(rows.len() - 1));
                 let near = first..=last;

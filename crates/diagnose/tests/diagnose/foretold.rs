@@ -1,32 +1,20 @@
 //! What fitted runs foretell of a run that is held out: a course of time that all share, and what stands beside a level of each.
 
-use super::roads::drive;
-use super::setting::{found_of_scenario, recording_of_scenario};
-use headland_calibrate::statistics::Draws;
+use super::roads::{BY_FORCE, drive, of_runs};
+use super::setting::found_of_scenario;
 use headland_diagnose::{Diagnosed, Options};
 use headland_plugin::Registry;
-use headland_recording::Recording;
 use headland_trace::{Channel, Trace};
 
 /// Seven drives with what is hidden in each, of which every so-manieth sample was logged, two of them held out.
 fn diagnosed(hidden: &dyn Fn(u32) -> String, every: usize, registry: &Registry) -> Diagnosed {
-    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
-        "speed_m_s" => value + 0.02 * draws.normal(),
-        "tractive_force_n" => value + 40.0 * draws.normal(),
-        _ => value,
-    };
-    let channels = ["speed_m_s", "tractive_force_n"];
-    let mut all: Option<Recording> = None;
-    for number in 0..7_u32 {
-        let sensor = (900 + u64::from(number), &noisy as _);
-        let mut recording = recording_of_scenario(&drive(&hidden(number)), registry, &channels, sensor);
-        let mut run = recording.runs.remove(0);
-        (run.id, run.path, run.held_out) = (format!("r{number}"), None, number % 4 == 2);
+    let held_out: [bool; 7] = std::array::from_fn(|number| number % 4 == 2);
+    let mut recording = of_runs(&held_out, (900, 40.0), &BY_FORCE, registry, hidden);
+    for (number, run) in recording.runs.iter_mut().enumerate() {
         // No two loggers begin with the same sample.
-        run.trace = thinned(&run.trace, 3 * number as usize % every, every);
-        all.get_or_insert(recording).runs.push(run);
+        run.trace = thinned(&run.trace, 3 * number % every, every);
     }
-    found_of_scenario(&drive(""), &all.unwrap(), &Options::default(), registry).unwrap()
+    found_of_scenario(&drive(""), &recording, &Options::default(), registry).unwrap()
 }
 
 /// Every so-manieth sample, from one on.

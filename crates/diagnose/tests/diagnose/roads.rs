@@ -55,46 +55,51 @@ const PER_K: f64 = 4e-4;
 
 /// A drive on each of so many days between −2 and 31 °C, with what else is hidden on that day.
 fn of_many_days(days: u32, registry: &Registry, hidden: &dyn Fn(u32) -> String) -> Recording {
-    let channels = ["speed_m_s", "position_m", "tractive_force_n"];
-    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
-        "speed_m_s" => value + 0.02 * draws.normal(),
-        "tractive_force_n" => value + 40.0 * draws.normal(),
-        _ => value,
+    let air_c = |number: u32| 31.0 - 3.0 * f64::from((number * 5) % 12);
+    let hidden = |number: u32| {
+        let cold = format!("rolling_resistance(coefficient: {:?})", PER_K * (20.0 - air_c(number)));
+        format!("{}, {cold}", hidden(number))
     };
-    let mut all = None;
-    for number in 0..days {
-        let air_c = 31.0 - 3.0 * f64::from((number * 5) % 12);
-        let cold = format!("rolling_resistance(coefficient: {:?})", PER_K * (20.0 - air_c));
-        let hidden = format!("{}, {cold}", hidden(number));
-        let sensor = (500 + u64::from(number), &noisy as _);
-        let mut recording = recording_of_scenario(&drive(&hidden), registry, &channels, sensor);
-        let mut run = recording.runs.remove(0);
-        let samples = run.trace.len();
-        run.trace.push("air_temperature_c", vec![air_c; samples], Origin::Measured).unwrap();
-        (run.id, run.path, run.held_out) = (format!("day_{number}"), None, number % 4 == 3);
-        all.get_or_insert(recording).runs.push(run);
+    let held_out: Vec<bool> = (0..days).map(|number| number % 4 == 3).collect();
+    let channels = ["speed_m_s", "position_m", "tractive_force_n"];
+    let mut recording = of_runs(&held_out, (500, 40.0), &channels, registry, &hidden);
+    for (number, run) in (0..).zip(&mut recording.runs) {
+        let temperature_c = vec![air_c(number); run.trace.len()];
+        run.trace.push("air_temperature_c", temperature_c, Origin::Measured).unwrap();
     }
-    all.unwrap()
+    recording
 }
 
-/// So many drives with what is hidden in each, by speed and by force with so much noise; the last is held out.
-fn of_runs(runs: u32, noise_n: f64, registry: &Registry, hidden: &dyn Fn(u32) -> String) -> Recording {
+/// Nobody recorded places.
+pub const BY_FORCE: [&str; 2] = ["speed_m_s", "tractive_force_n"];
+
+/// A drive for each of these, held out where it says so, with what is hidden in it, and a force with so much noise; each has a seed
+/// of its own, the first this one.
+pub fn of_runs(
+    held_out: &[bool],
+    (seed, noise_n): (u64, f64),
+    channels: &[&str],
+    registry: &Registry,
+    hidden: &dyn Fn(u32) -> String,
+) -> Recording {
     let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
         "speed_m_s" => value + 0.02 * draws.normal(),
         "tractive_force_n" => value + noise_n * draws.normal(),
         _ => value,
     };
-    let channels = ["speed_m_s", "tractive_force_n"];
     let mut all = None;
-    for number in 0..runs {
-        let sensor = (700 + u64::from(number), &noisy as _);
-        let mut recording = recording_of_scenario(&drive(&hidden(number)), registry, &channels, sensor);
+    for (number, held_out) in (0..).zip(held_out) {
+        let sensor = (seed + u64::from(number), &noisy as _);
+        let mut recording = recording_of_scenario(&drive(&hidden(number)), registry, channels, sensor);
         let mut run = recording.runs.remove(0);
-        (run.id, run.path, run.held_out) = (format!("r{number}"), None, number + 1 == runs);
+        (run.id, run.path, run.held_out) = (format!("r{number}"), None, *held_out);
         all.get_or_insert(recording).runs.push(run);
     }
     all.unwrap()
 }
+
+/// Of six runs the last is held out.
+const LAST: [bool; 6] = [false, false, false, false, false, true];
 
 /// Tyres that warm up from the temperature outside are one cause, and no oil beside the cold.
 #[test]
@@ -134,7 +139,7 @@ fn a_resistance_that_rises_in_the_cold_is_told_beside_the_slopes_of_many_roads()
 fn a_pull_of_single_runs_is_told_beside_a_load_that_comes() {
     const FILLS: &str = "payload_change(times_s: [0, 40, 150, 300], masses_kg: [0, 0, 4000, 4000])";
     let registry = headland_stock::registry();
-    let recording = of_runs(6, 400.0, &registry, &|number| {
+    let recording = of_runs(&LAST, (700, 400.0), &BY_FORCE, &registry, &|number| {
         let pulls = if number % 2 == 0 { ", drawbar_load(force_n: 4000, from_s: 95, to_s: 140)" } else { "" };
         format!("{FILLS}{pulls}")
     });
@@ -153,7 +158,7 @@ fn a_pull_of_single_runs_is_told_beside_a_load_that_comes() {
 #[test]
 fn force_that_answers_slopes_is_no_loss_of_the_drive() {
     let registry = headland_stock::registry();
-    let recording = of_runs(6, 40.0, &registry, &|number| road(u64::from(number)));
+    let recording = of_runs(&LAST, (700, 40.0), &BY_FORCE, &registry, &|number| road(u64::from(number)));
     let found = found_of_scenario(&drive(""), &recording, &Options::default(), &registry).unwrap();
     let told: Vec<&str> = found.diagnosis.findings.iter().map(|one| one.id.as_str()).collect();
     assert!(told == ["grade"] || told == ["soft_ground"], "{}", found.diagnosis.answer);

@@ -14,6 +14,7 @@ use crate::report::Interval;
 use crate::said::Said;
 use crate::sensors::{corrected, small_latency_s};
 use crate::{Case, DiagnoseError};
+use headland_sim::Drive;
 use nalgebra::{Matrix2, Vector2};
 
 /// The fault that it is.
@@ -54,19 +55,30 @@ struct Begin {
     slows_m_s2: f64,
 }
 
-/// How late the speed of coast-downs is; none where it is not, where some of them are driven, or where too few tell.
+/// How late the speed of coast-downs is; none where it is not, or where too few tell. Beside runs that are driven an accelerometer has
+/// to say that it is the sensor: those may have begun in any way.
 pub fn late(case: &Case) -> Option<Late> {
-    if case.driven() || !case.wanted(LATENCY) {
+    if !case.wanted(LATENCY) {
         return None;
     }
-    let begins: Vec<Begin> =
-        case.runs.iter().zip(&case.nominal).filter_map(|(run, said)| begin(run, said)).collect();
+    let coasts = case.coasts();
+    let coasting = || case.runs.iter().zip(&case.nominal).zip(&coasts).filter(|(_, coasts)| **coasts);
+    let begins: Vec<Begin> = coasting().filter_map(|((run, said), _)| begin(run, said)).collect();
     if begins.len() < FEWEST {
         return None;
     }
     let told = told(&begins)?;
-    let sensor = in_neutral(&case.runs, &case.nominal, told.value);
-    (told.value > small_latency_s(case)).then_some(Late { sensor, ..told })
+    let sensor = in_neutral(coasting().map(|(both, _)| both), told.value);
+    let known = sensor == Some(true) || !coasts.contains(&false);
+    (known && told.value > small_latency_s(case)).then_some(Late { sensor, ..told })
+}
+
+impl Case<'_> {
+    /// Which runs coast from their begin on: all, where nothing can have driven any, else those of which a flag says so.
+    fn coasts(&self) -> Vec<bool> {
+        let driven = self.driven();
+        self.runs.iter().map(|run| !driven || run.forward() == Some(Drive::Coast)).collect()
+    }
 }
 
 /// Sets a late speed right in all runs, or leaves out what was recorded before neutral. A fault, where it is the sensor's.
@@ -220,9 +232,9 @@ fn centred(values: &[f64]) -> Vec<f64> {
 }
 
 /// Whether the accelerometers of the runs show the deceleration from the begin on.
-fn in_neutral(runs: &[Recorded], said: &[Said], delay_s: f64) -> Option<bool> {
+fn in_neutral<'a>(runs: impl Iterator<Item = (&'a Recorded, &'a Said)>, delay_s: f64) -> Option<bool> {
     let (mut shown, mut made, mut samples) = (0.0, 0.0, 0usize);
-    for (run, said) in runs.iter().zip(said) {
+    for (run, said) in runs {
         let trace = &run.measured.trace;
         let Some(specific) = trace.get("specific_force_m_s2") else { continue };
         let begin_s = trace.time_s()[0];

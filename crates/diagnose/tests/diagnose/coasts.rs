@@ -3,6 +3,7 @@
 use super::setting::{ELECTRIC, found_of_scenario, named, recording_of_scenario};
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{DiagnoseError, Diagnosed, Options, Verdict};
+use headland_recording::Recording;
 use headland_trace::{Origin, Trace};
 
 /// Ten coast-downs to and fro, from two speeds; `more` are further fields.
@@ -42,24 +43,26 @@ fn found(hidden: &str, more: &str) -> Result<Diagnosed, DiagnoseError> {
     found_of_scenario(&scenario("", more), &recording, &Options::default(), &registry)
 }
 
-/// A receiver that is late still says the speed of before where a coast-down begins, in every run and wherever that is. It was told
-/// as slopes at the places where the runs begin, and as a brake.
-#[test]
-fn a_speed_that_goes_on_at_the_begin_of_every_coast_down_is_late() {
-    const LATE: usize = 6;
-    let registry = headland_stock::registry();
-    let exact = |_: &str, value: f64, _: &mut Draws| value;
-    let text = scenario("", "").replace("coefficient: 0.02)", "coefficient: 0.06)");
-    let prompt = recording_of_scenario(&text, &registry, &["speed_m_s"], (0, &exact));
-    let mut late = prompt.clone();
-    for (number, run) in late.runs.iter_mut().enumerate() {
-        let (exact, mut draws) = (run.trace.get("speed_m_s").unwrap().to_vec(), Draws::new(7, number as u64));
+/// Samples by which a receiver is late.
+const LATE: usize = 6;
+
+/// The same runs with a speed that is late and noisy, and what an accelerometer feels where an acceleration was recorded.
+fn by_a_late_receiver(mut recording: Recording) -> Recording {
+    for (number, run) in recording.runs.iter_mut().enumerate() {
+        let mut draws = Draws::new(7, number as u64);
+        let exact = run.trace.remove("speed_m_s").unwrap().values;
         let said = (0..exact.len()).map(|index| exact[index.saturating_sub(LATE)] + 0.03 * draws.normal());
-        let said = said.collect();
-        run.trace = Trace::new(run.trace.time_s().to_vec()).unwrap();
-        run.trace.push("speed_m_s", said, Origin::Measured).unwrap();
+        run.trace.push("speed_m_s", said.collect(), Origin::Measured).unwrap();
+        if let Some(felt) = run.trace.remove("acceleration_m_s2") {
+            let felt = felt.values.iter().map(|value| value + 0.05 * draws.normal()).collect();
+            run.trace.push("specific_force_m_s2", felt, Origin::Measured).unwrap();
+        }
     }
-    let found = found_of_scenario(&text, &late, &Options::default(), &registry).unwrap();
+    recording
+}
+
+/// That a diagnosis tells a late speed, and by how much.
+fn is_late(found: &Diagnosed) {
     let said = &found.diagnosis;
     assert_eq!(said.verdict, Verdict::SensorArtefact, "{}", said.answer);
     assert_eq!((said.findings.len(), said.findings[0].id.as_str()), (1, "latency"), "{}", said.answer);
@@ -69,6 +72,39 @@ fn a_speed_that_goes_on_at_the_begin_of_every_coast_down_is_late() {
     // And the improved recording is set right by it.
     let (channel, latency_s, _, _) = &found.corrections[0];
     assert!(channel == "speed_m_s" && (low..=high).contains(latency_s), "{:?}", found.corrections);
+}
+
+/// A receiver that is late still says the speed of before where a coast-down begins, in every run and wherever that is. It was told
+/// as slopes at the places where the runs begin, and as a brake.
+#[test]
+fn a_speed_that_goes_on_at_the_begin_of_every_coast_down_is_late() {
+    let registry = headland_stock::registry();
+    let exact = |_: &str, value: f64, _: &mut Draws| value;
+    let text = scenario("", "").replace("coefficient: 0.02)", "coefficient: 0.06)");
+    let late = by_a_late_receiver(recording_of_scenario(&text, &registry, &["speed_m_s"], (0, &exact)));
+    is_late(&found_of_scenario(&text, &late, &Options::default(), &registry).unwrap());
+}
+
+/// A run that was driven says nothing of how the others begin.
+#[test]
+fn a_late_speed_is_told_by_coast_downs_beside_a_run_that_was_driven() {
+    let registry = headland_stock::registry();
+    let exact = |_: &str, value: f64, _: &mut Draws| value;
+    let coasts = scenario("", "")
+        .replace("coefficient: 0.02)", "coefficient: 0.06)")
+        .replace("driveline: Neutral()", &format!("driveline: {ELECTRIC}"));
+    let drives = coasts.replace(
+        "cycle: [Coast(until: SpeedBelow(speed_m_s: 0.6))]",
+        "cycle: [Hold(for_s: 20), Reach(speed_m_s: 5, acceleration_m_s2: 0.3), Hold(for_s: 20)]",
+    );
+    let channels = ["speed_m_s", "tractive_force_n", "coasting", "acceleration_m_s2"];
+    let of = |text: &str| recording_of_scenario(text, &registry, &channels, (0, &exact));
+    let mut recording = of(&coasts);
+    let mut driven = of(&drives).runs.remove(0);
+    driven.id = "driven".to_owned();
+    recording.runs.push(driven);
+    let late = by_a_late_receiver(recording);
+    is_late(&found_of_scenario(&coasts, &late, &Options::default(), &registry).unwrap());
 }
 
 fn noted(found: &Diagnosed, what: &str) -> bool {

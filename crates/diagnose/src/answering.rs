@@ -2,8 +2,8 @@
 //! goes with whatever is not explained yet.
 //!
 //! With F = Z + e, where Z is what the model knows of and e what it does not, a regression on F makes ⟨e²⟩/⟨F²⟩ of e its own. An
-//! instrument tells: a cause in proportion to F shows as much in rows of Z. There e is what is left of the rows around, but for
-//! those that share samples, and with them noise.
+//! instrument tells: a cause in proportion to F shows as much in rows of Z. There e is what is left in the mean of a row and those
+//! beside it: their noise of the speed is correlated with its own by −½ each, and takes itself back.
 //! Source: instrumental variables and the test of Hausman; Greene, *Econometric Analysis* (2018), section 8.
 
 use crate::balance::Kind;
@@ -36,11 +36,12 @@ impl State<'_> {
         let noises = self.even(stand);
         let whitened = Whitened::new(&system.chunks, &system.residual, &columns, &noises)?;
         let reduced = self.without_functions(&whitened, &self.profiles(&stand.parts), self.fit)?;
-        let told = by_instrument(&reduced, &chosen.sd, (position, value))?;
-        Some((told - value).abs() > APART * value.abs())
+        // Where the known force shows next to nothing of it, no size is found, and all of it is an answer.
+        let told = by_instrument(&reduced, &chosen.sd, (position, value));
+        Some(told.is_none_or(|told| (told - value).abs() > APART * value.abs()))
     }
 
-    /// Noise that weighs all rows of the motion balance alike: what lasts is to be seen here.
+    /// Noise that weighs all rows of the motion balance alike, but for those that stray: what lasts is to be seen here.
     fn even(&self, stand: &Stand) -> Noises {
         let squares = self.system.mean_squares(&stand.left, self.fit);
         let mut noises = stand.noises.clone();
@@ -94,7 +95,7 @@ impl State<'_> {
         Some(column.iter().zip(&force).map(of_chunk).collect())
     }
 
-    /// Mean of the rows around each row of the motion balance, but for those that share samples with it.
+    /// Mean of the rows around each row of the motion balance, its own among them.
     fn around(&self, rows: &Column) -> Column {
         /// So long to either side: a driver is as slow [s].
         const AROUND_S: f64 = 1.0;
@@ -107,9 +108,7 @@ impl State<'_> {
             let reach = ((AROUND_S / block_s).round() as usize).max(1);
             let mean = |row: usize| {
                 let (first, last) = (row.saturating_sub(reach), (row + reach).min(rows.len() - 1));
-                let near = first..=last;
-                let (sum, count) = near.fold((0.0, 0), |(sum, count), other| (sum + rows[other], count + 1));
-                if count > 0 { sum / f64::from(count) } else { 0.0 }
+                rows.rows_range(first..=last).mean()
             };
             DVector::from_iterator(rows.len(), (0..rows.len()).map(mean))
         };
@@ -122,10 +121,12 @@ fn times(one: &Column, other: &Column) -> Column {
     one.iter().zip(other).map(|(one, other)| one.component_mul(other)).collect()
 }
 
-/// A column's size by an instrument: by itself without what the force makes of what is left. The last two columns are that of what
-/// the rows leave, and of the column itself.
+/// A column's size by an instrument: by itself without what the force makes of what is left; none where it does not settle. The last
+/// two columns are that of what the rows leave, and of the column itself.
 fn by_instrument(reduced: &Reduced, sd: &[f64], (position, value): (usize, f64)) -> Option<f64> {
     const ROUNDS: usize = 50;
+    /// Of what was estimated.
+    const SETTLED: f64 = 0.01;
     let used = sd.len();
     let others: Vec<usize> = (0..used).filter(|column| *column != position).collect();
     let mut known =
@@ -143,13 +144,12 @@ fn by_instrument(reduced: &Reduced, sd: &[f64], (position, value): (usize, f64))
         (reduced.vector[column] - cross.dot(&rows), reduced.matrix[(column, position)] - cross.dot(&own))
     };
     let (itself, left, again) = (product(position), product(used), product(used + 1));
-    let mut told = value;
-    for _ in 0..ROUNDS {
-        let more = value - told;
-        let of = |itself: f64, left: f64, again: f64| itself - left - more * again;
-        told = of(itself.0, left.0, again.0) / of(itself.1, left.1, again.1);
-    }
-    told.is_finite().then_some(told)
+    let next = |told: f64| {
+        let of = |itself: f64, left: f64, again: f64| itself - left - (value - told) * again;
+        of(itself.0, left.0, again.0) / of(itself.1, left.1, again.1)
+    };
+    let told = (0..ROUNDS).fold(value, |told, _| next(told));
+    ((next(told) - told).abs() < SETTLED * value.abs()).then_some(told)
 }
 
 #[cfg(test)]

@@ -165,9 +165,12 @@ pub fn refine(
     }
     // No scenario has the small losses that were free beside what was found.
     let lossless = without_losses(pool, found);
+    if let Some(found) = &lossless {
+        refined = linear(case, pool, found, &beyond);
+    }
     // The constants of a law are what its search made of them.
     if refined.causes.iter().any(|cured| cured.cause.form == Form::Law) {
-        return Ok(lossless.map_or(refined, |found| linear(case, pool, &found, &beyond)));
+        return Ok(refined);
     }
     let found = lossless.as_ref().unwrap_or(found);
     let mut new: Vec<Cured> = physics.iter().map(|place| refined.causes[*place].clone()).collect();

@@ -11,7 +11,7 @@ use crate::gram::{Column, Reduced, Whitened};
 use crate::noise::{Noise, Noises};
 use crate::rows::Chunk;
 use crate::state::{Part, Stand, State};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 impl State<'_> {
     /// Whether no cause of a set is in proportion to a measured force and there only because that force answers to what is left.
@@ -129,19 +129,16 @@ fn by_instrument(reduced: &Reduced, sd: &[f64], (position, value): (usize, f64))
     const SETTLED: f64 = 0.01;
     let used = sd.len();
     let others: Vec<usize> = (0..used).filter(|column| *column != position).collect();
-    let mut known =
-        DMatrix::from_fn(used - 1, used - 1, |row, column| reduced.matrix[(others[row], others[column])]);
-    for (row, column) in others.iter().enumerate() {
-        known[(row, row)] += sd[*column].powi(-2);
-    }
-    let known = known.cholesky()?;
+    let known = reduced.estimate(&others, sd)?;
     let with = |column: usize| DVector::from_fn(used - 1, |row, _| reduced.matrix[(others[row], column)]);
-    let rows = known.solve(&DVector::from_fn(used - 1, |row, _| reduced.vector[others[row]]));
-    let own = known.solve(&with(position));
+    let own = &known.covariance * with(position);
     // Products with the rows and with the column, the others projected out.
     let product = |column: usize| {
         let cross = with(column);
-        (reduced.vector[column] - cross.dot(&rows), reduced.matrix[(column, position)] - cross.dot(&own))
+        (
+            reduced.vector[column] - cross.dot(&known.beta),
+            reduced.matrix[(column, position)] - cross.dot(&own),
+        )
     };
     let (itself, left, again) = (product(position), product(used), product(used + 1));
     let next = |told: f64| {
@@ -156,6 +153,7 @@ fn by_instrument(reduced: &Reduced, sd: &[f64], (position, value): (usize, f64))
 mod tests {
     use super::*;
     use headland_calibrate::statistics::Draws;
+    use nalgebra::DMatrix;
 
     /// Estimate and size by the instrument of a loss in proportion to a force of known part Z and an answer e, of which the rows
     /// hold a share of the force and what is not known.

@@ -80,7 +80,12 @@ impl Case<'_> {
         let shared = share_paths(&self.runs, &self.fit);
         // Wheels that slip accelerate nothing, and beside themselves they would slip twice: what that does is far from twice as much.
         let slips = |cured: &Cured| cured.cause.id == SLIP;
-        let shown = |cured: &Cured| (shared || cured.cause.form != Form::OverPosition) && !slips(cured);
+        // What takes power alone accelerates nothing and weighs nothing, and an engine that cut its fuel before it was found would take
+        // less of it beside itself than it takes of it.
+        let consumes = |cured: &Cured| cured.cause.balances.iter().all(|kind| kind.is_power());
+        let shown = |cured: &Cured| {
+            (shared || cured.cause.form != Form::OverPosition) && !slips(cured) && !consumes(cured)
+        };
         // Masses, and what they push on; of a wind, which is no sum of columns, nothing of the kind can be said.
         let is_mass = |cured: &Cured| ["mass", "payload_change"].contains(&cured.cause.id);
         let pushes = refined.causes.iter().any(is_mass);

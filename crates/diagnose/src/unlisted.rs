@@ -129,6 +129,7 @@ fn candidates(
     if patched && !maps.is_empty() && rows <= MANY_ROWS {
         starts.push(maps);
     }
+    starts.extend(without_each(case, &listed).into_iter().filter(|_| rows <= MANY_ROWS));
     if !listed.is_empty() {
         starts.push(listed);
     }
@@ -173,6 +174,22 @@ fn candidates(
         candidates.push(found.stand.parts.iter().cloned().chain([part]).collect());
     }
     Ok(candidates)
+}
+
+/// A set without each of its causes in turn: beside one that is there another may be what a law is taken for, and leaves no law
+/// anything to say.
+fn without_each(case: &Case, listed: &[Part]) -> Vec<Vec<Part>> {
+    /// What so many causes say together no law says beside all but one of them.
+    const MOST: usize = 3;
+    let able = |part: &&Part| part.spread.is_none() && case.causes[part.trial.cause].law.is_none();
+    if !(PATCHES..=MOST).contains(&listed.len()) || !listed.iter().all(|part| able(&part)) {
+        return Vec::new();
+    }
+    let without = |left: usize| {
+        let others = listed.iter().enumerate().filter(|(place, _)| *place != left);
+        others.map(|(_, part)| part.clone()).collect()
+    };
+    (0..listed.len()).map(without).collect()
 }
 
 fn beside(
@@ -387,10 +404,13 @@ impl State<'_> {
         strains(stand).into_iter().zip(strains(other)).all(|(strain, other)| strain < most.max(other))
     }
 
-    /// Causes of a set that do to the rows what a free parameter does, each with the column of that one and by how many of its
-    /// standard deviations they move it: more mass is mass, whatever it is called.
+    /// Listed causes of a set that do to the rows what a free parameter does, each with the column of that one and by how many of
+    /// its standard deviations they move it: more mass is mass, whatever it is called. A law that is another parameter in other
+    /// words is no better than that, and is not judged here.
     fn stand_ins(&self, stand: &Stand) -> Vec<(usize, f64)> {
-        let parts = stand.parts.iter().filter(|part| part.spread.is_none() && part.trial.columns.len() == 1);
+        let single = |part: &&Part| part.spread.is_none() && part.trial.columns.len() == 1;
+        let listed = |part: &&Part| self.cause(&part.trial).law.is_none();
+        let parts = stand.parts.iter().filter(|part| single(part) && listed(part));
         let Some(reduced) = self.reduced(&stand.noises, &[]) else { return Vec::new() };
         let product = |one: usize, other: usize| reduced.matrix[(one, other)];
         let of = |part: &Part| {

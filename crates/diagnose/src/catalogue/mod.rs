@@ -194,6 +194,10 @@ fn by_oil(weight: f64) -> Cause {
     .shaped(SCALES_K.map(|scale_k| vec![scale_k, REFERENCE_C]).into())
 }
 
+/// What a pass leaves of the resistance that the one before it left: between the points of so coarse a grid lies more than
+/// levels that differ from run to run leave to be told.
+const PASSED_ON: [f64; 6] = [0.95, 0.85, 0.7, 0.55, 0.4, 0.25];
+
 /// What may differ from run to run: the surface, what is hitched or mounted.
 fn by_run(around: &Around, pull: Term) -> [Cause; 4] {
     let coefficient = linear("coefficient", "1", 0.015).no_less(-around.coefficient);
@@ -588,7 +592,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
                 "ground that firms with every pass",
                 "drive a fresh lane beside the old one",
             )
-            .shaped(vec![vec![0.9], vec![0.7]]),
+            .shaped(PASSED_ON.map(|factor| vec![factor]).into()),
         );
     }
     if around.drives {

@@ -141,7 +141,8 @@ pub fn add_trial(
     let mut found: Vec<Part> = Vec::new();
     for (term, part) in cause.terms.iter().enumerate().filter(|(_, term)| term.linear) {
         let share = if case.has_built() && !is_whole(cause) { STEP_BESIDE } else { CAUSE_STEP };
-        let step = case.step_so_far(cause, part).unwrap_or(share * part.scale);
+        let whole = cause.whole_step(shape).or_else(|| case.step_so_far(cause, part));
+        let step = whole.unwrap_or(share * part.scale);
         let known = pool
             .trials
             .iter()

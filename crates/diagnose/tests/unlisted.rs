@@ -599,3 +599,21 @@ fn a_drag_above_a_temperature_of_the_oil_is_found_as_an_equation() {
     assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);
     assert!(said.findings[0].depends_on.contains(&"oil_temperature_c".to_owned()), "{}", said.answer);
 }
+
+/// A law that is many times what is left open of the drag area, and much like it: it is no other drag area, and says in one term what
+/// two listed laws would patch.
+#[test]
+fn a_law_like_a_free_parameter_is_not_that_parameter() {
+    let text = |effects: &str| {
+        let free = r#"free: [(name: "vehicle.drag_area_m2", sd: 0.6, bounds: (2, 12)),"#;
+        scenario(0.03, effects, "").replacen("free: [", free, 1)
+    };
+    let hidden = r#"expression(resistance: "a_n * (abs(v) / v1_m_s)^1.5", constants: {"a_n": 2800.0, "v1_m_s": 10.0})"#;
+    let recording = recorded_of_scenario(&text(hidden), &headland_stock::registry());
+    let registry = headland_stock::registry();
+    let found = found_of_scenario(&text(""), &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    let [law] = &said.findings[..] else { panic!("{}", said.answer) };
+    assert_eq!((law.kind, said.verdict), (FindingKind::Unlisted, Verdict::Unlisted), "{}", said.answer);
+    assert!(law.equation.contains("^1.5"), "{}", law.equation);
+}

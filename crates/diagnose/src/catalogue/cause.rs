@@ -100,7 +100,15 @@ pub fn cause(
     }
 }
 
+/// The cause that is a limit.
+pub const LIMIT: &str = "regeneration_limit";
+
 impl Cause {
+    /// The step by which a cause of this shape is told, where it is no multiple of another: all of it.
+    pub fn whole_step(&self, shape: &[f64]) -> Option<f64> {
+        if self.id == LIMIT { shape.first().copied() } else { None }
+    }
+
     /// Places of the begin and of the end of a window among the terms, where it has one.
     pub fn window(&self) -> Option<(usize, usize)> {
         self.places("from_s", "to_s")

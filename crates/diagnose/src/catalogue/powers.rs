@@ -1,6 +1,6 @@
 //! What takes power and makes no force.
 
-use super::cause::{Cause, Form, cause};
+use super::cause::{Cause, Form, LIMIT, cause};
 use super::term::{Term, linear, positive, shape};
 use super::{Around, fading, windows};
 use crate::balance::Kind;
@@ -23,6 +23,30 @@ const OF_A_CAR_W: f64 = 1000.0;
 const OF_AN_ENGINE_W: f64 = 3000.0;
 /// What is switched takes more than what is always on.
 const SWITCHED: f64 = 1.5;
+
+/// A drive gives back so many watts for a kilogram of its vehicle at most: from that of a town car that hardly does, by factors of a
+/// fifth, to what a machine as strong as the engine could.
+const GIVEN_BACK_W_KG: f64 = 0.8;
+const GIVEN_BACK_TIMES: f64 = 1.2;
+const GIVEN_BACK: u8 = 22;
+
+/// A limit of what the drive gives back, told by the power alone: where the torque was recorded, that says it. Its effect bends at the
+/// limit, so that each shape is a whole one and its size the limit itself.
+fn regeneration_limit(around: &Around) -> Cause {
+    let least_w = GIVEN_BACK_W_KG * around.mass_kg;
+    let limits_w = (0..GIVEN_BACK).map(|step| vec![least_w * GIVEN_BACK_TIMES.powi(i32::from(step))]);
+    let usual_w = least_w * GIVEN_BACK_TIMES.powi(i32::from(GIVEN_BACK));
+    cause(
+        LIMIT,
+        &[Kind::Battery],
+        vec![positive("power_w", "W", usual_w)],
+        "−F v ≤ P_r, brakes take the rest",
+        &["battery_power_w"],
+        "a limit of the power that the drive gives back, beyond which brakes take over",
+        "brake at several speeds, as hard as the drive alone can, and log the brake switch",
+    )
+    .shaped(limits_w.collect())
+}
 
 /// Adds what the drive of this vehicle could be missing.
 pub fn powers(all: &mut Vec<Cause>, around: &Around) {
@@ -49,6 +73,18 @@ pub fn powers(all: &mut Vec<Cause>, around: &Around) {
         )
         .over(Form::OverTime),
     );
+    all.push(
+        cause(
+            "auxiliary_power",
+            &[Kind::Battery, Kind::Fuel],
+            vec![positive("power_w", "W", SWITCHED * usual_w)],
+            "P = P₀ in each run",
+            &[],
+            "a consumer that is on in some of the runs",
+            "log the current of heater, fan and hydraulics",
+        )
+        .by_run(),
+    );
     if around.duration_s <= SHORT_RUN_S {
         all.push(
             cause(
@@ -62,6 +98,10 @@ pub fn powers(all: &mut Vec<Cause>, around: &Around) {
             )
             .shaped(windows(around.duration_s)),
         );
+    }
+    let has = |name: &str| around.channels.iter().any(|channel| channel == name);
+    if !engine && !has("motor_torque_n_m") && !has("tractive_force_n") {
+        all.push(regeneration_limit(around));
     }
     all.push(cause(
         "battery_resistance",

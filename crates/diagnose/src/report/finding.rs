@@ -147,7 +147,7 @@ pub struct Doubts {
 /// What a diagnosis says in a word. Beside what is certain, one cause in doubt leaves open what is missing; it takes nothing
 /// from a sensor's fault. Where far more than noise is left, something is missing all the same: no cause is claimed then, or
 /// what is claimed may stand in for it, unless it is `timed` and no run can show it of another: then the runs that were fitted
-/// have to be near the noise. Nor is certain what leaves most of the error that the noise does not explain. A free parameter that ends so
+/// have to be near the noise. Nor is certain what leaves most of the error that the noise does not explain, a law least of all. A free parameter that ends so
 /// many standard deviations (`strain`) from what was known of it stands in for something as well. A fault that may as well be
 /// physics leaves open whether anything is missing, and so does a cause that may as well be none (`slight`). What makes the error grow in
 /// runs that it never saw is not certain either, whatever it is.
@@ -166,6 +166,11 @@ pub fn verdict(findings: &[FindingReport], fit: &Fit, doubts: &Doubts) -> Verdic
     /// What leaves so many times the noise, and this share of the error, says little of what is missing.
     const LEFT: f64 = 5.0;
     const MOST_LEFT: f64 = 0.7;
+    /// A law foretells what it is the law of: one that leaves so much is a part of something else.
+    const LEFT_BY_A_LAW: f64 = 3.0;
+    const MOST_LEFT_BY_A_LAW: f64 = 0.6;
+    /// What each run tells of itself can follow a speed as near to the noise as that.
+    const FOLLOWED: f64 = 3.0;
     let Doubts { timed, slight, strain } = *doubts;
     let far = fit.lack_of_fit > FAR;
     let any = |kind: FindingKind| findings.iter().any(|finding| finding.kind == kind);
@@ -176,10 +181,16 @@ pub fn verdict(findings: &[FindingReport], fit: &Fit, doubts: &Doubts) -> Verdic
     let strained = strain > if any(FindingKind::Artefact) { STRAINED_BY_A_FAULT } else { STRAINED_BESIDE };
     let claims = any(FindingKind::Physics) || any(FindingKind::Unlisted);
     let far_fitted = fit.fitted.rmse_after > FAR * fit.fitted.noise;
-    let leaves = |runs: &super::FitRuns| {
-        runs.rmse_after > LEFT * runs.noise && runs.rmse_after > MOST_LEFT * runs.rmse_before
+    let (left, most_left) = if first.kind == FindingKind::Unlisted {
+        (LEFT_BY_A_LAW, MOST_LEFT_BY_A_LAW)
+    } else {
+        (LEFT, MOST_LEFT)
     };
-    let says_little = !timed && fit.held_out.as_ref().is_some_and(leaves);
+    let leaves = |runs: &super::FitRuns| {
+        runs.rmse_after > left * runs.noise && runs.rmse_after > most_left * runs.rmse_before
+    };
+    let follows = fit.signal != "speed_m_s" || fit.fitted.rmse_after < FOLLOWED * fit.fitted.noise;
+    let says_little = fit.held_out.as_ref().is_some_and(leaves) && !(timed && follows);
     let rough = far && (!timed || far_fitted) || says_little;
     let doubtful = claims && (rough || fit.grows() || slight) || strained;
     if first.kind == FindingKind::Unlisted && !first.is_doubtful() && !doubtful {
@@ -501,21 +512,29 @@ mod tests {
         let law = [finding(FindingKind::Unlisted, "unlisted", None)];
         assert_eq!(verdict(&law, 3.0, false), Verdict::Unlisted);
         assert_eq!(verdict(&law, 40.0, false), Verdict::CannotTell);
-        // A law that leaves four fifths of the error, eight times the noise, is none.
-        let left = |timed| super::verdict(&law, &fit(8.0, 0.8), &Doubts { timed, ..Doubts::default() });
-        assert_eq!(left(false), Verdict::CannotTell);
-        assert_eq!(left(true), Verdict::Unlisted);
+        // A law that leaves four fifths of the error, four times the noise, is none, and what each run tells of itself is not either
+        // where it does not follow what was fitted.
+        let left = |found: &[FindingReport], fitted: f64, after: f64, timed| {
+            let mut fit = fit(8.0, after);
+            fit.fitted.rmse_after = fitted;
+            let held_out = fit.held_out.as_mut().unwrap();
+            held_out.rmse_before = 1.25 * after;
+            super::verdict(found, &fit, &Doubts { timed, ..Doubts::default() })
+        };
+        assert_eq!(left(&law, 0.4, 0.4, false), Verdict::CannotTell);
+        assert_eq!(left(&sure, 0.4, 0.4, false), Verdict::MissingPhysics);
+        assert_eq!(left(&sure, 0.1, 0.8, false), Verdict::CannotTell);
+        assert_eq!(left(&sure, 0.1, 0.8, true), Verdict::MissingPhysics);
+        assert_eq!(left(&sure, 0.4, 0.8, true), Verdict::CannotTell);
     }
 
     #[test]
     fn what_hurts_in_runs_that_it_never_saw_is_no_certainty() {
         use FindingKind::{Artefact, Physics, Unlisted};
         let verdict = |kind, id, after: f64| {
-            super::verdict(
-                &[finding(kind, id, None)],
-                &fit(3.0, after),
-                &Doubts { timed: true, ..Doubts::default() },
-            )
+            let mut fit = fit(3.0, after);
+            fit.fitted.rmse_after = 0.1;
+            super::verdict(&[finding(kind, id, None)], &fit, &Doubts { timed: true, ..Doubts::default() })
         };
         assert_eq!(verdict(Physics, "auxiliary_power", 1.01), Verdict::MissingPhysics);
         assert_eq!(verdict(Physics, "auxiliary_power", 1.1), Verdict::CannotTell);

@@ -295,3 +295,38 @@ fn consumers_that_each_run_switches_at_times_of_its_own_are_told() {
     let edges = [[56.0, 64.0], [140.0, 120.0]].map(|edge| edge.map(|time_s| power_w[at(time_s)]));
     assert!(edges.iter().all(|[off, on]| (on - off).abs() > 10_000.0), "{edges:?}: {}", said.answer);
 }
+
+/// Downhill an engine is driven, and the consumer that nobody knew is the first that asks it for power: what it takes of fuel there is
+/// less than elsewhere, with or without the slopes that were found meanwhile.
+#[test]
+fn a_consumer_takes_as_much_beside_slopes_that_let_the_engine_roll() {
+    const POWER_W: f64 = 3400.0;
+    let levels = [5, 8, 4, 9, 6]
+        .map(|speed_m_s| format!("Reach(speed_m_s: {speed_m_s}, acceleration_m_s2: 0.4), Hold(for_s: 18), "));
+    let text = |effects: &str| {
+        SCENARIO
+            .replacen(STANDS, &format!("cycle: [{}], effects: [{effects}],", levels.concat()), 1)
+            .replacen("coefficient: 0.05", "coefficient: 0.017", 1)
+            .replacen("sd: 0.005", "sd: 0.0015", 1)
+            .replacen("sd: 2000", "sd: 700", 1)
+    };
+    let slopes = "grade(positions_m: [0, 100, 200, 300, 400, 500, 600, 700, 900], \
+                  grades: [0.0, 0.03, -0.02, -0.04, 0.02, 0.03, -0.03, 0.01, 0.0])";
+    let registry = headland_stock::registry();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.015 * draws.normal(),
+        "tractive_force_n" => value + 100.0 * draws.normal(),
+        "fuel_rate_kg_s" => (value + 4e-5 * draws.normal()).max(0.0),
+        _ => value,
+    };
+    let channels = ["speed_m_s", "position_m", "tractive_force_n", "fuel_rate_kg_s"];
+    let hidden = text(&format!("auxiliary_power(power_w: {POWER_W:?}), {slopes}"));
+    let recording = recording_of_scenario(&hidden, &registry, &channels, (43, &noisy));
+    let found = found_of_scenario(&text(""), &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    let mut told: Vec<&str> = said.findings.iter().map(|one| one.id.as_str()).collect();
+    told.sort_unstable();
+    assert_eq!(told, ["auxiliary_power", "grade"], "{}", said.answer);
+    let consumer = said.findings.iter().find(|one| one.id == "auxiliary_power").unwrap();
+    assert!((consumer.parameters[0].value / POWER_W - 1.0).abs() < 0.1, "{}", said.answer);
+}

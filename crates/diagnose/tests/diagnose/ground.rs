@@ -60,6 +60,30 @@ fn a_map_that_lies_off_nought_all_along_names_the_level_beside_it() {
     assert!(!named(&alone, "rolling_resistance"), "{}", alone.diagnosis.answer);
 }
 
+/// Passes that leave little to resist: a level of its own in each run says as much, and teaches no run the next one. Beside what was
+/// found already no regressor may ask for less than nothing.
+#[test]
+fn ground_that_firms_to_next_to_nothing_is_no_level_of_each_run() {
+    const FACTOR: f64 = 0.6;
+    let registry = headland_stock::registry();
+    let passes = format!("multipass(coefficient: 0.021, factor: {FACTOR:?}, pass: 1)");
+    let of_pass = |text: String, run: usize| {
+        let with = |pass: usize| format!("(id: \"c{run}\", with: {{\"effects.0.pass\": {pass}, ");
+        text.replace(&format!("(id: \"c{run}\", with: {{"), &with(run + 1))
+    };
+    let hidden = (0..8).fold(coasts(&passes), of_pass);
+    let noisy = |name: &str, value: f64, draws: &mut Draws| {
+        if name == "speed_m_s" { value + 0.03 * draws.normal() } else { value }
+    };
+    let recording = recording_of_scenario(&hidden, &registry, &["speed_m_s", "position_m"], (29, &noisy));
+    let found = found_of_scenario(&coasts(""), &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    let [pass] = &said.findings[..] else { panic!("{}", said.answer) };
+    assert_eq!(pass.id, "multipass", "{}", said.answer);
+    let factor = pass.parameters.iter().find(|one| one.name == "factor").unwrap();
+    assert!((factor.value - FACTOR).abs() < 0.05, "{factor:?}");
+}
+
 /// What the speed is held by follows the ground, and moves nothing: a mass would be as large as it may be.
 #[test]
 fn runs_whose_speed_was_held_tell_no_mass() {

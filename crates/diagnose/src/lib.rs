@@ -45,6 +45,7 @@ mod jumps;
 mod laid;
 mod late_power;
 mod leaps;
+mod level;
 mod likeliest;
 mod locate;
 mod look;

@@ -324,11 +324,15 @@ fn linear(case: &Case, pool: &Pool, found: &Found, beyond: &Beyond) -> Refined {
     Refined { causes, free: free.collect(), null_space: Vec::new() }
 }
 
-/// Adds spells in single runs, those of each name as one cause.
+/// Adds spells in single runs, those of each name as one cause, where any of them is in a run that was fitted: what is told by runs
+/// that were held out is no finding.
 pub fn spells(case: &Case, system: &System, events: &[Event], refined: &mut Refined) {
     let motion = system.kinds.iter().position(|kind| *kind == Kind::Motion);
     let Some(balance) = motion else { return };
     for (id, events) in named(&case.runs, events) {
+        if !events.iter().any(|event| case.fit[event.run]) {
+            continue;
+        }
         let limit = if id == "braking" { limit_w(case, &events) } else { None };
         let mut cured = spelt(if limit.is_some() { "regeneration_limit" } else { id }, events, balance);
         if limit.is_none() && id == "braking" && is_gentle(case, &cured.events) {

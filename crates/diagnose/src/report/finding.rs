@@ -5,6 +5,7 @@ use crate::balance::{Kind, System};
 use crate::catalogue::{ARTEFACTS, Cause, Class, Form};
 use crate::events::Event;
 use crate::faults::Fault;
+use crate::level::level;
 use crate::locate::stretches;
 use crate::prove::Proof;
 use crate::refine::{Cured, HALF_95, Refined};
@@ -388,6 +389,9 @@ fn function_parameters(cause: &Cause, function: &crate::profile::Function) -> Ve
             sum += value * value;
             count += 1;
         }
+    }
+    if let Some(level) = level(cause, function) {
+        peak = level;
     }
     let rms = (sum / count.max(1) as f64).sqrt();
     let unit = if cause.form == Form::OverPosition { "m" } else { "s" };

@@ -10,6 +10,7 @@ pub use number::{number, plain};
 use crate::Case;
 use crate::balance::Kind;
 use crate::catalogue::{Cause, Class};
+use crate::level::level;
 use crate::refine::{Cured, HALF_95};
 use crate::report::{ParameterReport, RivalReport};
 use number::{quantity, with_interval};
@@ -130,12 +131,16 @@ fn values(cured: &Cured, parameters: &[ParameterReport]) -> Values {
             with_interval(degrees(from.value), from.ci95.map(degrees), "")
         ));
     }
-    if cured.function().is_some() {
+    if let Some(function) = cured.function() {
         let [peak, rms, ..] = parameters else { return Values::None };
+        let least_or_most = match level(&cured.cause, function) {
+            Some(_) => "",
+            None if peak.value < 0.0 => "down to ",
+            None => "up to ",
+        };
         return Values::Beside(format!(
-            "{} {} to {}, {} in the root mean square",
+            "{} {least_or_most}{}, {} in the root mean square",
             label(&peak.name),
-            if peak.value < 0.0 { "down" } else { "up" },
             with_interval(peak.value, peak.ci95, &peak.unit),
             quantity(rms.value, &rms.unit)
         ));

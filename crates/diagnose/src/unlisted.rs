@@ -30,8 +30,10 @@ const DOUBT: f64 = 0.5;
 const EVERYWHERE: f64 = 0.04;
 /// And in so many runs, by that of the runs' sums.
 const SHARED: f64 = 1.2;
-/// A consumer that may take any course is not told by a formula beyond so many rows.
+/// A consumer that may take any course is not told by a formula beyond so many rows, nor is one looked for in the place of each cause.
 const LONG_ROWS: usize = 8_000;
+/// Where what lasts of the noise is less than this share of that of the sensors, nothing is left that another law could say better.
+const WANDERS: f64 = 0.1;
 /// Causes that a law of so many terms less takes the place of.
 const PATCHES: usize = 2;
 /// Causes that hide each other bring beside one another up to so many times what the best of them brings alone.
@@ -129,7 +131,14 @@ fn candidates(
     if patched && !maps.is_empty() && rows <= MANY_ROWS {
         starts.push(maps);
     }
-    starts.extend(without_each(case, &listed).into_iter().filter(|_| rows <= MANY_ROWS));
+    let wanders = system
+        .kinds
+        .iter()
+        .zip(&found.stand.noises.each)
+        .any(|(kind, noise)| *kind == sought.kind && noise.lasting() > WANDERS * noise.sensor);
+    if wanders && rows <= LONG_ROWS && sought.target != Target::Share {
+        starts.extend(without_each(case, &listed, sought.kind));
+    }
     if !listed.is_empty() {
         starts.push(listed);
     }
@@ -176,9 +185,9 @@ fn candidates(
     Ok(candidates)
 }
 
-/// A set without each of its causes in turn: beside one that is there another may be what a law is taken for, and leaves no law
-/// anything to say.
-fn without_each(case: &Case, listed: &[Part]) -> Vec<Vec<Part>> {
+/// A set without each of its causes in turn that does something to a balance: beside one that is there another may be what a law is
+/// taken for, and leaves no law anything to say.
+fn without_each(case: &Case, listed: &[Part], kind: Kind) -> Vec<Vec<Part>> {
     /// What so many causes say together no law says beside all but one of them.
     const MOST: usize = 3;
     let able = |part: &&Part| part.spread.is_none() && case.causes[part.trial.cause].law.is_none();
@@ -189,7 +198,8 @@ fn without_each(case: &Case, listed: &[Part]) -> Vec<Vec<Part>> {
         let others = listed.iter().enumerate().filter(|(place, _)| *place != left);
         others.map(|(_, part)| part.clone()).collect()
     };
-    (0..listed.len()).map(without).collect()
+    let works = |place: &usize| kind.among(case.causes[listed[*place].trial.cause].balances);
+    (0..listed.len()).filter(works).map(without).collect()
 }
 
 fn beside(

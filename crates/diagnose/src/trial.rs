@@ -6,7 +6,6 @@ use crate::catalogue::{Cause, Form};
 use crate::gram::Column;
 use crate::look::MANY_ROWS;
 use crate::losses::{bent_engine, half_samples, slow_powers, small_losses, torque_errors};
-use crate::mirror::is_whole;
 use crate::recorded::Recorded;
 use crate::remembered::Driven;
 use crate::said::Said;
@@ -60,9 +59,10 @@ pub struct Trial {
 const NUISANCE_STEP: f64 = 0.3;
 /// A change of an effect's parameter for its column, as a share of its usual size.
 const CAUSE_STEP: f64 = 0.5;
-/// The same beside what was found so far, but for winds, which are no multiples of each other: where little resistance is left, what
-/// takes more of it would take all, and no resistance drives.
+/// The same, beside what was found so far, of causes that take from the resistance of the ground: where little of it is left they would
+/// take all, and no resistance drives.
 const STEP_BESIDE: f64 = 0.05;
+const TAKES: [&str; 2] = ["multipass", "rolling_resistance"];
 /// What is left of a corrected fault, as a share of its usual size.
 const REST: f64 = 0.1;
 /// What a map is everywhere, as a share of what it is in places: a level belongs to the soil, and a slope all along to the lane.
@@ -140,7 +140,7 @@ pub fn add_trial(
     let cause = &case.causes[number];
     let mut found: Vec<Part> = Vec::new();
     for (term, part) in cause.terms.iter().enumerate().filter(|(_, term)| term.linear) {
-        let share = if case.has_built() && !is_whole(cause) { STEP_BESIDE } else { CAUSE_STEP };
+        let share = if case.has_built() && TAKES.contains(&cause.id) { STEP_BESIDE } else { CAUSE_STEP };
         let whole = cause.whole_step(shape).or_else(|| case.step_so_far(cause, part));
         let step = whole.unwrap_or(share * part.scale);
         let known = pool

@@ -82,7 +82,8 @@ impl Case<'_> {
         let slips = |cured: &Cured| cured.cause.id == SLIP;
         // What takes power alone accelerates nothing and weighs nothing, and an engine that cut its fuel before it was found would take
         // less of it beside itself than it takes of it.
-        let consumes = |cured: &Cured| cured.cause.balances.iter().all(|kind| kind.is_power());
+        let consumes =
+            |cured: &Cured| !cured.cause.upstream && cured.cause.balances.iter().all(|kind| kind.is_power());
         let shown = |cured: &Cured| {
             (shared || cured.cause.form != Form::OverPosition) && !slips(cured) && !consumes(cured)
         };

@@ -73,18 +73,21 @@ pub fn powers(all: &mut Vec<Cause>, around: &Around) {
         )
         .over(Form::OverTime),
     );
-    all.push(
-        cause(
-            "auxiliary_power",
-            &[Kind::Battery, Kind::Fuel],
-            vec![positive("power_w", "W", SWITCHED * usual_w)],
-            "P = P₀ in each run",
-            &[],
-            "a consumer that is on in some of the runs",
-            "log the current of heater, fan and hydraulics",
-        )
-        .by_run(),
-    );
+    // What a battery gives is known well enough to tell runs apart by it; an engine has more of that kind from run to run.
+    if !engine {
+        all.push(
+            cause(
+                "auxiliary_power",
+                &[Kind::Battery],
+                vec![positive("power_w", "W", SWITCHED * usual_w)],
+                "P = P₀ in each run",
+                &[],
+                "a consumer that is on in some of the runs",
+                "log the current of heater, fan and hydraulics",
+            )
+            .by_run(),
+        );
+    }
     if around.duration_s <= SHORT_RUN_S {
         all.push(
             cause(

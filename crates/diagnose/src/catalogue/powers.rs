@@ -48,6 +48,21 @@ fn regeneration_limit(around: &Around) -> Cause {
     .shaped(limits_w.collect())
 }
 
+/// A consumer with a level of its own in each run. What a battery gives is known well enough to tell runs apart by it; an engine has
+/// more of that kind from run to run.
+fn in_some_runs(usual_w: f64) -> Cause {
+    cause(
+        "auxiliary_power",
+        &[Kind::Battery],
+        vec![positive("power_w", "W", SWITCHED * usual_w)],
+        "P = P₀ in each run",
+        &[],
+        "a consumer that is on in some of the runs",
+        "log the current of heater, fan and hydraulics",
+    )
+    .by_run()
+}
+
 /// Adds what the drive of this vehicle could be missing.
 pub fn powers(all: &mut Vec<Cause>, around: &Around) {
     let engine = around.channels.iter().any(|name| name == "fuel_rate_kg_s" || name == "engine_torque_n_m");
@@ -73,20 +88,8 @@ pub fn powers(all: &mut Vec<Cause>, around: &Around) {
         )
         .over(Form::OverTime),
     );
-    // What a battery gives is known well enough to tell runs apart by it; an engine has more of that kind from run to run.
     if !engine {
-        all.push(
-            cause(
-                "auxiliary_power",
-                &[Kind::Battery],
-                vec![positive("power_w", "W", SWITCHED * usual_w)],
-                "P = P₀ in each run",
-                &[],
-                "a consumer that is on in some of the runs",
-                "log the current of heater, fan and hydraulics",
-            )
-            .by_run(),
-        );
+        all.push(in_some_runs(usual_w));
     }
     if around.duration_s <= SHORT_RUN_S {
         all.push(

@@ -13,7 +13,7 @@ pub use sensors::{ARTEFACTS, MOST_SCALE, MOST_SPEED_SCALE};
 pub use term::Term;
 
 use crate::balance::Kind;
-use cause::cause;
+use cause::{LIMIT, cause};
 use powers::powers;
 use sensors::sensors;
 use term::{linear, positive, shape};
@@ -137,8 +137,8 @@ pub fn spell(id: &str) -> Cause {
             "F = F_b while braking",
             "log the brake switch",
         ),
-        "regeneration_limit" => (
-            "regeneration_limit",
+        LIMIT => (
+            LIMIT,
             "a limit of the power that the drive gives back, beyond which brakes take over",
             "−F v ≤ P_r, brakes take the rest",
             "brake at several speeds, as hard as the drive alone can, and log the brake switch",
@@ -151,7 +151,7 @@ pub fn spell(id: &str) -> Cause {
         ),
     };
     let term = match id {
-        "regeneration_limit" => positive("power_w", "W", 10_000.0),
+        LIMIT => positive("power_w", "W", 10_000.0),
         _ => positive("force_n", "N", 1000.0),
     };
     let terms = vec![term];

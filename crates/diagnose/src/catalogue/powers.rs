@@ -2,7 +2,7 @@
 
 use super::cause::{Cause, Form, LIMIT, cause};
 use super::term::{Term, linear, positive, shape};
-use super::{Around, fading, windows};
+use super::{Around, fading, spell, windows};
 use crate::balance::Kind;
 
 /// What is switched at the same time in every run belongs to a plan of the runs, which long ones do not have [s].
@@ -36,15 +36,14 @@ fn regeneration_limit(around: &Around) -> Cause {
     let least_w = GIVEN_BACK_W_KG * around.mass_kg;
     let limits_w = (0..GIVEN_BACK).map(|step| vec![least_w * GIVEN_BACK_TIMES.powi(i32::from(step))]);
     let usual_w = least_w * GIVEN_BACK_TIMES.powi(i32::from(GIVEN_BACK));
-    cause(
-        LIMIT,
-        &[Kind::Battery],
-        vec![positive("power_w", "W", usual_w)],
-        "−F v ≤ P_r, brakes take the rest",
-        &["battery_power_w"],
-        "a limit of the power that the drive gives back, beyond which brakes take over",
-        "brake at several speeds, as hard as the drive alone can, and log the brake switch",
-    )
+    // What is said of it is the same where brakes tell of it.
+    Cause {
+        balances: &[Kind::Battery],
+        terms: vec![positive("power_w", "W", usual_w)],
+        depends_on: &["battery_power_w"],
+        form: Form::Parameters,
+        ..spell(LIMIT)
+    }
     .shaped(limits_w.collect())
 }
 

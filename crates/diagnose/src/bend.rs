@@ -8,10 +8,12 @@
 use crate::catalogue::{Cause, Form};
 use crate::gram::Column;
 use crate::mirror::{is_whole, lean};
+use crate::profile::COARSE;
 use crate::search::Found;
-use crate::state::{Part, State};
-use crate::trial::{Pool, Trial, effect, for_run};
+use crate::state::{Part, Stand, State};
+use crate::trial::{Pool, Trial, add_trial_at, effect, for_run};
 use crate::{Case, DiagnoseError, System};
+use nalgebra::DVector;
 
 /// So many causes get the chance.
 const MOST: usize = 3;
@@ -70,7 +72,73 @@ pub fn bend(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> Res
         };
         added |= bent(case, system, pool, &trial, &size)?;
     }
-    Ok(added)
+    Ok(levelled(case, system, pool, found)? || added)
+}
+
+/// Adds a wind that blows otherwise in each run, where it is accepted or nearly, at what it is in each of them and along the axis that
+/// tells them best. Whether there is one.
+fn levelled(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> Result<bool, DiagnoseError> {
+    /// The axis is turned by half the way to the next one that was tried, and by halves of that [rad].
+    const TURNS_RAD: [f64; 4] = [0.2, 0.1, 0.05, 0.025];
+    let Some((parts, place)) = blowing(case, system, pool, found) else { return Ok(false) };
+    let (columns, trials) = (pool.columns.len(), pool.trials.len());
+    let number = parts[place].trial.cause;
+    let made = |pool: &mut Pool, stand: &Stand, axis_rad: f64| -> Result<Option<Stand>, DiagnoseError> {
+        pool.truncate(columns, trials);
+        let Some(levels) = levels_m_s(stand, place) else { return Ok(None) };
+        let mut parts = parts.clone();
+        add_trial_at(case, system, pool, number, (&[axis_rad], &levels))?;
+        let Some(trial) = pool.trials.get(trials) else { return Ok(None) };
+        parts[place].trial = trial.clone();
+        Ok(State { case, system, pool, fit: &case.fit }.settle(&parts, &found.noises.1))
+    };
+    let axis_of = |stand: &Stand| stand.parts[place].trial.shape.first().copied().unwrap_or(0.0);
+    let first = State { case, system, pool, fit: &case.fit }.settle(&parts, &found.noises.1);
+    let Some(mut best) = first else { return Ok(false) };
+    for _ in 0..ROUNDS {
+        let axis_rad = axis_of(&best);
+        let Some(other) = made(pool, &best, axis_rad)? else { break };
+        best = other;
+    }
+    let free = case.causes[number].terms.iter().any(|term| !term.linear && !term.is_held());
+    for turn_rad in TURNS_RAD.iter().filter(|_| free).flat_map(|turn_rad| [*turn_rad, -turn_rad]) {
+        let turned_rad = axis_of(&best) + turn_rad;
+        if let Some(other) = made(pool, &best, turned_rad)?.filter(|other| other.score > best.score) {
+            best = other;
+        }
+    }
+    let axis_rad = axis_of(&best);
+    made(pool, &best, axis_rad)?;
+    Ok(pool.trials.len() > trials)
+}
+
+/// A set with a wind that blows otherwise in each run, and its place among the parts: what was accepted, or that wind alone where
+/// nothing was and it was the best of what was tried.
+fn blowing(case: &Case, system: &System, pool: &Pool, found: &Found) -> Option<(Vec<Part>, usize)> {
+    let blows = |trial: &Trial| case.causes[trial.cause].blows_by_run();
+    let parts = found.stand.parts.clone();
+    if let Some(place) = parts.iter().position(|part| blows(&part.trial)) {
+        return Some((parts, place));
+    }
+    let (cause, shape, gain) = found.tried.first()?.causes.first().filter(|_| parts.is_empty())?;
+    let tried = |trial: &&Trial| trial.cause == *cause && trial.shape == *shape && blows(trial);
+    let trial = pool.trials.iter().find(tried).filter(|_| *gain > 0.0)?.clone();
+    let part = Part { trial, spread: None };
+    let state = State { case, system, pool, fit: &case.fit };
+    let spread = state.best_spread(&part, &found.stand, &found.noises.1, COARSE)?;
+    Some((vec![Part { spread: Some(spread), ..part }], 0))
+}
+
+/// What a wind is in each run [m/s], at the begin of it: knots are further apart than any run is long. Where it is next to nothing, its column is that of a little.
+fn levels_m_s(stand: &Stand, place: usize) -> Option<Vec<f64>> {
+    const LEAST_M_S: f64 = 0.5;
+    let even = stand.estimate.beta[stand.position(stand.parts[place].trial.columns[0])?];
+    let function = stand.functions.get(place)?.as_ref()?;
+    let level = |(values, _): &(DVector<f64>, DVector<f64>)| {
+        let level = even + values.iter().next().copied().unwrap_or(0.0);
+        level.abs().max(LEAST_M_S).copysign(level)
+    };
+    Some(function.values.iter().map(level).collect())
 }
 
 /// Adds strong winds from all sides. One of 10 m/s is not ten times one of 1 m/s, and next to nothing like it where vehicles are

@@ -14,7 +14,7 @@ use crate::split::{split, traits};
 use crate::standin::{Prepared, prepared};
 use crate::unmoved::{UNMOVED, UNTOLD, is_mass, moved};
 use crate::way::Scale;
-use crate::{DiagnoseError, placed};
+use crate::{DiagnoseError, mirror, placed};
 use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
 use headland_calibrate::study::Study;
 use headland_plugin::{Contact, Registry, closest};
@@ -393,6 +393,7 @@ impl<'a> Case<'a> {
             temperatures_k: (warmest - coldest).max(0.0),
             oil_k: (hottest - cool).max(0.0),
             beginnings: beginnings(&self.fit, &self.bears),
+            lane_rad: mirror::axis_rad(self),
             pulls: bearing().any(|run| run.force_n.is_some() || run.pull_n.is_some()),
         }
     }

@@ -34,13 +34,7 @@ mod tests {
             free: vec![Beside { change: 0.03, sd }],
         };
         let of = |rivals: Vec<Rival>| {
-            let trial = Trial {
-                cause: 0,
-                shape: Vec::new(),
-                columns: Vec::new(),
-                terms: Vec::new(),
-                beside: Vec::new(),
-            };
+            let trial = Trial::new(0, &[], Vec::new(), Vec::new());
             let accepted = Accepted {
                 trial,
                 gain: 20.0,

@@ -7,7 +7,7 @@ use crate::catalogue::Form;
 use crate::contest::Contest;
 use crate::search::{Accepted, Found, LEAST_GAIN, MOST_CAUSES, PER_CAUSE, search, search_without, worth};
 use crate::state::{Part, Stand, State};
-use crate::trial::{Pool, Trial, add_trial, pool};
+use crate::trial::{Pool, Trial, add_trial_at, pool};
 use crate::{Case, DiagnoseError, bend, built, sensors, sharpen, straying};
 use std::collections::BTreeSet;
 
@@ -296,10 +296,13 @@ pub fn again(
             continue;
         }
         let same = |trial: &&Trial| {
-            trial.cause == wanted.cause && trial.shape == wanted.shape && trial.terms == wanted.terms
+            trial.cause == wanted.cause
+                && trial.shape == wanted.shape
+                && trial.terms == wanted.terms
+                && trial.levels == wanted.levels
         };
         if !pool.trials.iter().any(|trial| same(&trial)) {
-            add_trial(case, system, pool, wanted.cause, &wanted.shape)?;
+            add_trial_at(case, system, pool, wanted.cause, (&wanted.shape, &wanted.levels))?;
         }
         if let Some(trial) = pool.trials.iter().find(same) {
             all.push(Part { trial: trial.clone(), spread: part.spread.clone() });

@@ -2,8 +2,8 @@
 //! there are two winds that explain as much, one the other's image in a mirror along the lane.
 
 use crate::Case;
-use crate::catalogue::Cause;
-use crate::recorded::SLOWEST_M_S;
+use crate::catalogue::{Cause, Form};
+use crate::recorded::{Recorded, SLOWEST_M_S};
 
 /// A sum of squares within this of the least one is as good: 95 % of a chi-square of one degree of freedom.
 pub const AS_GOOD: f64 = 3.84;
@@ -16,7 +16,7 @@ const STRAIGHT: f64 = 0.9;
 /// Whether the parts of a cause are one thing seen from two sides, so that one which the data do not need is not nought but
 /// unknown.
 pub fn is_whole(cause: &Cause) -> bool {
-    cause.id == "wind"
+    cause.id == "wind" && cause.form == Form::Parameters
 }
 
 /// What of a wind blows along the one line on which all runs went, which they tell whatever blows across it.
@@ -37,10 +37,15 @@ impl Lane {
         let along = cosine * north.0 + sine * east.0;
         let (north_sd, east_sd) = (cosine * north.1, sine * east.1);
         let variance = north_sd.powi(2) + east_sd.powi(2) + 2.0 * correlation * north_sd * east_sd;
-        let turned = if along < 0.0 { std::f64::consts::PI } else { 0.0 };
+        Self::along(axis_rad, (along, variance.max(0.0).sqrt()))
+    }
+
+    /// Of what blows from one end of the line, or from the other where that is negative, with its standard deviation.
+    pub fn along(axis_rad: f64, (along_m_s, sd_m_s): (f64, f64)) -> Self {
+        let turned = if along_m_s < 0.0 { std::f64::consts::PI } else { 0.0 };
         Self {
-            speed_m_s: along.abs(),
-            sd_m_s: variance.max(0.0).sqrt(),
+            speed_m_s: along_m_s.abs(),
+            sd_m_s,
             from_rad: (axis_rad + turned).rem_euclid(std::f64::consts::TAU),
         }
     }
@@ -57,9 +62,25 @@ pub fn lean<'a>(values: impl Iterator<Item = &'a mut f64>) {
 
 /// The line along which all runs went, clockwise from north [rad]; none where they went in more directions.
 pub fn axis_rad(case: &Case) -> Option<f64> {
-    let (mut cosine, mut sine, mut count) = (0.0, 0.0, 0.0);
+    let each = resultants(case)?;
+    let sum = |place: usize| each.iter().map(|one| one[place]).sum::<f64>();
+    line_rad([sum(0), sum(1), sum(2)])
+}
+
+/// Whether each run went along a line of its own.
+pub fn went_straight(case: &Case) -> bool {
+    resultants(case).is_some_and(|each| each.into_iter().all(|one| one[2] == 0.0 || line_rad(one).is_some()))
+}
+
+/// The line of doubled headings whose cosines and sines sum to this, over so many samples; none where they go in more directions.
+fn line_rad([cosine, sine, count]: [f64; 3]) -> Option<f64> {
+    (count > 0.0 && f64::hypot(cosine, sine) > STRAIGHT * count).then(|| 0.5 * sine.atan2(cosine))
+}
+
+/// Sums of the cosines and of the sines of the doubled headings of each run, and how many they are.
+fn resultants(case: &Case) -> Option<Vec<[f64; 3]>> {
     let priors = case.study.priors();
-    for run in &case.runs {
+    let of_run = |run: &Recorded| {
         let headings = if let Some(recorded) = run.measured.trace.get("heading_rad") {
             recorded.to_vec()
         } else {
@@ -67,13 +88,12 @@ pub fn axis_rad(case: &Case) -> Option<f64> {
             run.position_m.iter().map(|position| terrain.at(*position).heading_rad).collect()
         };
         let moving = run.motion.value.iter().zip(&headings).filter(|(speed, _)| **speed > SLOWEST_M_S);
-        for (_, heading) in moving.filter(|(_, heading)| heading.is_finite()) {
-            cosine += (2.0 * heading).cos();
-            sine += (2.0 * heading).sin();
-            count += 1.0;
-        }
-    }
-    (count > 0.0 && f64::hypot(cosine, sine) > STRAIGHT * count).then(|| 0.5 * sine.atan2(cosine))
+        let known = moving.filter(|(_, heading)| heading.is_finite());
+        Some(known.fold([0.0; 3], |[cosine, sine, count], (_, heading)| {
+            [cosine + (2.0 * heading).cos(), sine + (2.0 * heading).sin(), count + 1.0]
+        }))
+    };
+    case.runs.iter().map(of_run).collect()
 }
 
 /// A wind, north and east, in a mirror along a line.

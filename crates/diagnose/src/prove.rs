@@ -178,7 +178,8 @@ pub fn text(case: &Case, cured: &Cured, run: usize) -> Option<String> {
     if cured.cause.by_run {
         // A run that seems to be pulled by less than nothing is pulled by nothing: within its width that is what it can be.
         let term = &cured.cause.terms[0];
-        let value = function.values[run].0.mean().clamp(term.low, term.high);
+        let level = function.values[run].0.iter().next().copied().unwrap_or(0.0);
+        let value = level.clamp(term.low, term.high);
         return Some(cured.cause.constant(value, &cured.accepted.trial.shape));
     }
     let group = function.group_of(cured.cause.form, drive);

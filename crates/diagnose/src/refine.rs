@@ -63,10 +63,21 @@ impl Cured {
 
     /// Tells what of a wind blows along the line of all runs, from its parts, whose estimates are correlated.
     fn told_along(&mut self, case: &Case, correlation: f64) {
+        if self.cause.blows_by_run() {
+            self.lane = self.strongest().filter(|_| mirror::went_straight(case));
+        }
         let ([north, east, ..], true) = (&self.values[..], is_whole(&self.cause)) else { return };
         let known = |(value, ci95): &(f64, [f64; 2])| (*value, (ci95[1] - ci95[0]) / (2.0 * HALF_95));
         let parts = [known(north), known(east)];
         self.lane = mirror::axis_rad(case).map(|axis_rad| Lane::of(axis_rad, parts, correlation));
+    }
+
+    /// What of a wind that blows otherwise in each run blows along its axis where it is strongest.
+    fn strongest(&self) -> Option<Lane> {
+        let function = self.function()?;
+        let each = function.values.iter().filter_map(|(values, sds)| Some((*values.iter().next()?, sds[0])));
+        let (value, sd) = each.max_by(|one, other| one.0.abs().total_cmp(&other.0.abs()))?;
+        Some(Lane::along(*self.accepted.trial.shape.first()?, (value, sd)))
     }
 
     /// Whether single runs tell it of themselves: spells, or what works in one run.
@@ -381,8 +392,7 @@ fn spelt(id: &'static str, events: Vec<Event>, balance: usize) -> Cured {
     let whole: f64 = events.iter().map(longest).sum();
     let mean = events.iter().map(|event| event.force_n * longest(event)).sum::<f64>() / whole.max(1e-9);
     let sd = events.iter().map(|event| event.sd_n).fold(0.0, f64::max);
-    let trial =
-        Trial { cause: 0, shape: Vec::new(), columns: Vec::new(), terms: Vec::new(), beside: Vec::new() };
+    let trial = Trial::new(0, &[], Vec::new(), Vec::new());
     let accepted = Accepted {
         trial,
         gain: events.iter().map(|event| event.gain).fold(0.0, f64::max),

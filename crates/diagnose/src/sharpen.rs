@@ -41,7 +41,11 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
         let free = case.causes[cause].terms.iter().any(|term| !term.linear && !term.is_held());
         let known = chosen.iter().any(|(own, _)| *own == cause);
         let cause_of = &case.causes[cause];
-        if free && !known && (cause_of.form == Form::Parameters || cause_of.by_run) {
+        if free
+            && !known
+            && (cause_of.form == Form::Parameters || cause_of.by_run)
+            && !cause_of.blows_by_run()
+        {
             chosen.push((cause, shape.to_vec()));
         }
     };

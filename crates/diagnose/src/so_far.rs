@@ -84,8 +84,13 @@ impl Case<'_> {
         // less of it beside itself than it takes of it.
         let consumes =
             |cured: &Cured| !cured.cause.upstream && cured.cause.balances.iter().all(|kind| kind.is_power());
+        // Beside a wind that blows otherwise in each run more drag area would be that wind.
+        let blows = |cured: &Cured| cured.cause.blows_by_run();
         let shown = |cured: &Cured| {
-            (shared || cured.cause.form != Form::OverPosition) && !slips(cured) && !consumes(cured)
+            (shared || cured.cause.form != Form::OverPosition)
+                && !slips(cured)
+                && !consumes(cured)
+                && !blows(cured)
         };
         // Masses, and what they push on; of a wind, which is no sum of columns, nothing of the kind can be said.
         let is_mass = |cured: &Cured| ["mass", "payload_change"].contains(&cured.cause.id);

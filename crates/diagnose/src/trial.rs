@@ -53,6 +53,15 @@ pub struct Trial {
     pub terms: Vec<usize>,
     /// Columns that stand beside a function of it: what goes with speed.
     pub beside: Vec<usize>,
+    /// The level of each run that its signature was made at, where it is in proportion to none; empty where it is.
+    pub levels: Vec<f64>,
+}
+
+impl Trial {
+    /// A trial of which columns are known by their terms, and nothing else.
+    pub fn new(cause: usize, shape: &[f64], columns: Vec<usize>, terms: Vec<usize>) -> Self {
+        Self { cause, shape: shape.to_vec(), columns, terms, beside: Vec::new(), levels: Vec::new() }
+    }
 }
 
 /// A change of a free parameter for its column, as a share of its standard deviation.
@@ -137,11 +146,22 @@ pub fn add_trial(
     number: usize,
     shape: &[f64],
 ) -> Result<(), DiagnoseError> {
+    add_trial_at(case, system, pool, number, (shape, &[]))
+}
+
+/// The same of a cause that is in proportion to none of its levels, at those of each run; in small steps where there are none.
+pub fn add_trial_at(
+    case: &Case,
+    system: &System,
+    pool: &mut Pool,
+    number: usize,
+    (shape, levels): (&[f64], &[f64]),
+) -> Result<(), DiagnoseError> {
     let cause = &case.causes[number];
     let mut found: Vec<Part> = Vec::new();
     for (term, part) in cause.terms.iter().enumerate().filter(|(_, term)| term.linear) {
         let share = if case.has_built() && TAKES.contains(&cause.id) { STEP_BESIDE } else { CAUSE_STEP };
-        let whole = cause.whole_step(shape).or_else(|| case.step_so_far(cause, part));
+        let whole = cause.own_step(shape).or_else(|| case.step_so_far(cause, part));
         let step = whole.unwrap_or(share * part.scale);
         let known = pool
             .trials
@@ -149,6 +169,8 @@ pub fn add_trial(
             .find(|trial| cause.does_the_same((term, shape), &case.causes[trial.cause], &trial.shape));
         let column = if let Some(known) = known {
             pool.columns[known.columns[0]].clone()
+        } else if !levels.is_empty() {
+            at_levels(case, system, cause, shape, levels)?
         } else if let Some(column) = in_window(case, system, cause, (term, step), shape)? {
             column
         } else if cause.form == Form::Measured {
@@ -166,6 +188,7 @@ pub fn add_trial(
     let trials = pool.trials.len();
     add(system, pool, (number, cause), shape, found);
     if let Some(trial) = pool.trials.get_mut(trials) {
+        trial.levels = levels.to_vec();
         trial.beside = (pool.columns.len()..pool.columns.len() + beside.len()).collect();
         for (column, sd) in beside {
             pool.columns.push(column);
@@ -173,6 +196,22 @@ pub fn add_trial(
         }
     }
     Ok(())
+}
+
+/// What a cause that has a level in each run does to the rows at those, per unit of them.
+fn at_levels(
+    case: &Case,
+    system: &System,
+    cause: &Cause,
+    shape: &[f64],
+    levels: &[f64],
+) -> Result<Column, DiagnoseError> {
+    let mut column =
+        effect(case, system, cause, 1.0, &|run: &Recorded| cause.constant(levels[run.number], shape))?;
+    for (rows, chunk) in column.iter_mut().zip(&system.chunks) {
+        *rows /= levels[chunk.run];
+    }
+    Ok(column)
 }
 
 /// What an effect does to the rows, per step of it.
@@ -359,14 +398,8 @@ fn add(system: &System, pool: &mut Pool, (number, cause): (usize, &Cause), shape
     if columns.len() > 1 {
         for (column, term) in columns.iter().zip(&terms).filter(|(_, term)| cause.alone(**term)) {
             let (columns, terms) = (vec![*column], vec![*term]);
-            pool.trials.push(Trial {
-                cause: number,
-                shape: shape.to_vec(),
-                columns,
-                terms,
-                beside: Vec::new(),
-            });
+            pool.trials.push(Trial::new(number, shape, columns, terms));
         }
     }
-    pool.trials.push(Trial { cause: number, shape: shape.to_vec(), columns, terms, beside: Vec::new() });
+    pool.trials.push(Trial::new(number, shape, columns, terms));
 }

@@ -627,8 +627,7 @@ fn put(case: &mut Case, pool: &mut Pool, cause: Cause, rows: Column) -> Part {
     pool.columns.push(rows);
     // Its amplitudes are in it: what is estimated is one, nearly.
     pool.sd.push(1.0);
-    let trial =
-        Trial { cause: number, shape: Vec::new(), columns: vec![column], terms: vec![0], beside: Vec::new() };
+    let trial = Trial::new(number, &[], vec![column], vec![0]);
     pool.trials.push(trial.clone());
     Part { trial, spread: None }
 }

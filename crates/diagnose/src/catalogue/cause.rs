@@ -5,6 +5,7 @@ use super::powers::START;
 use super::term::Term;
 use crate::balance::Kind;
 use crate::own::Own;
+use std::f64::consts::{PI, TAU};
 
 /// What tyres that warm up are in proportion to.
 const WARMING: &str = "cold_coefficient";
@@ -104,9 +105,20 @@ pub fn cause(
 pub const LIMIT: &str = "regeneration_limit";
 
 impl Cause {
-    /// The step by which a cause of this shape is told, where it is no multiple of another: all of it.
-    pub fn whole_step(&self, shape: &[f64]) -> Option<f64> {
-        if self.id == LIMIT { shape.first().copied() } else { None }
+    /// The step by which a cause of this shape is told, where a share of its usual size tells something else: all of a limit, and
+    /// next to nothing of a wind that blows either way.
+    pub fn own_step(&self, shape: &[f64]) -> Option<f64> {
+        const BREATH_M_S: f64 = 0.1;
+        match self.id {
+            LIMIT => shape.first().copied(),
+            _ if self.blows_by_run() => Some(BREATH_M_S),
+            _ => None,
+        }
+    }
+
+    /// Whether it is a wind that blows otherwise in each run.
+    pub fn blows_by_run(&self) -> bool {
+        self.id == "wind" && self.by_run
     }
 
     /// Places of the begin and of the end of a window among the terms, where it has one.
@@ -296,6 +308,11 @@ impl Cause {
     /// The effect of a function that has one value throughout, as a scenario writes it, with its non-linear parameters.
     pub fn constant(&self, value: f64, shape: &[f64]) -> String {
         let Some((id, name)) = self.even() else { return String::new() };
+        if let (true, [from_rad, ..]) = (self.blows_by_run(), shape) {
+            // From the other end of its axis it blows no less.
+            let from_rad = from_rad + if value < 0.0 { PI } else { 0.0 };
+            return format!("wind(speed_m_s: {:?}, from_rad: {from_rad:?})", value.abs());
+        }
         let held = self.terms.iter().filter(|term| !term.linear).zip(shape);
         let held = held.map(|(term, value)| format!("{}: {value:?}", term.name));
         let all: Vec<String> = std::iter::once(format!("{name}: {value:?}")).chain(held).collect();
@@ -331,7 +348,7 @@ impl Cause {
         match self.id {
             "wind" => {
                 let (north, east) = (values[0], values[1]);
-                let from = east.atan2(north).rem_euclid(std::f64::consts::TAU);
+                let from = east.atan2(north).rem_euclid(TAU);
                 format!("wind(speed_m_s: {:?}, from_rad: {from:?})", north.hypot(east))
             }
             "cornering_drag" => {

@@ -16,6 +16,7 @@ use crate::balance::Kind;
 use cause::{LIMIT, cause};
 use powers::powers;
 use sensors::sensors;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use term::{linear, positive, shape};
 
 /// What the vehicle and its runs are like, for scales and grids.
@@ -59,6 +60,8 @@ pub struct Around {
     pub pulls: bool,
     /// Runs that may have begun otherwise than the others, by number.
     pub beginnings: Vec<usize>,
+    /// The line along which all runs went, clockwise from north [rad]; none where they went in more directions.
+    pub lane_rad: Option<f64>,
 }
 
 /// Shares of the greatest speed at which a drag may set in, beyond most of the samples.
@@ -240,6 +243,29 @@ fn by_run(around: &Around, pull: Term) -> [Cause; 4] {
             "weigh the vehicle before each run",
         ),
     ]
+}
+
+/// A wind that blows otherwise in each run, to and fro along one axis: that of the lane, where all runs went along one line, and else
+/// the one that the runs tell, by that end of it which lies in the south.
+fn wind_by_run(around: &Around) -> Cause {
+    const AXES: u8 = 8;
+    let (from_rad, axes) = if let Some(lane_rad) = around.lane_rad {
+        (shape("from_rad", "rad").held(lane_rad), vec![vec![lane_rad]])
+    } else {
+        let axis = |place: u8| FRAC_PI_2 + PI * (f64::from(place) + 0.5) / f64::from(AXES);
+        (shape("from_rad", "rad").within(0.0, TAU), (0..AXES).map(|place| vec![axis(place)]).collect())
+    };
+    cause(
+        "wind",
+        MOTION,
+        vec![linear("headwind_m_s", "m/s", 5.0).within(-MOST_WIND_M_S, MOST_WIND_M_S), from_rad],
+        "F = ½ ρ CdA (|v − w| (v − w)ₓ − v²) in each run",
+        &["speed_m_s", "heading_rad"],
+        "a wind that differs from run to run",
+        "log the wind of each run, or repeat two runs in each direction on a calm day",
+    )
+    .shaped(axes)
+    .by_run()
 }
 
 /// What holds a vehicle on a side slope.
@@ -537,6 +563,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
         ),
     ];
     all.extend(by_run(around, pull));
+    all.push(wind_by_run(around));
     all.extend([around.speeds_m_s[2], 0.0].into_iter().filter_map(|speed| square_law(around, speed)));
     if has("curvature_per_m") {
         all.push(cause(

@@ -283,6 +283,30 @@ fn spells(case: &Case, events: &[Event]) -> Vec<Interval> {
     events.iter().map(one).collect()
 }
 
+/// Where a wind comes from that blows otherwise in each run, its strongest as it is there.
+fn blown(told: &mut [ParameterReport], cured: &Cured) -> ParameterReport {
+    /// Half of what lies between two axes that are tried [rad]; runs that each went along a line tell nothing of the axis.
+    const HALF_RAD: f64 = std::f64::consts::PI / 16.0;
+    let half_rad = if cured.lane.is_some() { std::f64::consts::PI } else { HALF_RAD };
+    let turned = told.first().is_some_and(|peak| peak.value < 0.0);
+    if let (true, Some(peak)) = (turned, told.first_mut()) {
+        peak.value = -peak.value;
+        peak.ci95 = [-peak.ci95[1], -peak.ci95[0]];
+    }
+    for (one, name) in told.iter_mut().zip(["speed_m_s", "speed_m_s_rms"]) {
+        name.clone_into(&mut one.name);
+    }
+    let axis_rad = cured.accepted.trial.shape.first().copied().unwrap_or(0.0);
+    let from_rad =
+        (axis_rad + if turned { std::f64::consts::PI } else { 0.0 }).rem_euclid(std::f64::consts::TAU);
+    ParameterReport {
+        name: "from_rad".to_owned(),
+        value: from_rad,
+        ci95: [from_rad - half_rad, from_rad + half_rad],
+        unit: "rad".to_owned(),
+    }
+}
+
 fn parameters(cured: &Cured) -> Vec<ParameterReport> {
     let one = |name: &str, value: f64, ci95: [f64; 2], unit: &str| ParameterReport {
         name: name.to_owned(),
@@ -292,6 +316,11 @@ fn parameters(cured: &Cured) -> Vec<ParameterReport> {
     };
     if let Some(function) = cured.function() {
         let mut told = function_parameters(&cured.cause, function);
+        if cured.cause.blows_by_run() {
+            let from = blown(&mut told, cured);
+            told.push(from);
+            return told;
+        }
         let held = cured.cause.terms.iter().filter(|term| !term.linear).zip(&cured.accepted.trial.shape);
         // It was chosen among several that lie a factor of two apart, and moved between them.
         told.extend(held.map(|(term, value)| one(term.name, *value, [0.5 * value, 2.0 * value], term.unit)));

@@ -113,7 +113,10 @@ enum Values {
 
 fn values(cured: &Cured, parameters: &[ParameterReport]) -> Values {
     let find = |name: &str| parameters.iter().find(|one| one.name == name);
-    if let ("wind", Some(speed), Some(from)) = (cured.cause.id, find("speed_m_s"), find("from_rad")) {
+    let whole = cured.function().is_none();
+    if let ("wind", true, Some(speed), Some(from)) =
+        (cured.cause.id, whole, find("speed_m_s"), find("from_rad"))
+    {
         // Runs that all go the same way, there and back, show no more of it.
         let degrees = |rad: f64| rad.to_degrees();
         if from.ci95[1] - from.ci95[0] > std::f64::consts::PI {
@@ -138,8 +141,13 @@ fn values(cured: &Cured, parameters: &[ParameterReport]) -> Values {
             None if peak.value < 0.0 => "down to ",
             None => "up to ",
         };
+        let part = if cured.lane.is_some() {
+            "the part along their lanes, which is all that these runs show: "
+        } else {
+            ""
+        };
         return Values::Beside(format!(
-            "{} {least_or_most}{}, {} in the root mean square",
+            "{part}{} {least_or_most}{}, {} in the root mean square",
             label(&peak.name),
             with_interval(peak.value, peak.ci95, &peak.unit),
             quantity(rms.value, &rms.unit)

@@ -78,8 +78,8 @@ pub fn bend(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> Res
 /// Adds a wind that blows otherwise in each run, where it is accepted or nearly, at what it is in each of them and along the axis that
 /// tells them best. Whether there is one.
 fn levelled(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> Result<bool, DiagnoseError> {
-    /// The axis is turned by half the way to the next one that was tried, and by halves of that [rad].
-    const TURNS_RAD: [f64; 4] = [0.2, 0.1, 0.05, 0.025];
+    /// The axis is turned by a good part of the way to the next one that was tried, and by halves of that [rad].
+    const TURNS_RAD: [f64; 5] = [0.4, 0.2, 0.1, 0.05, 0.025];
     let Some((parts, place)) = blowing(case, system, pool, found) else { return Ok(false) };
     let (columns, trials) = (pool.columns.len(), pool.trials.len());
     let number = parts[place].trial.cause;

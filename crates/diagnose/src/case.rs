@@ -393,7 +393,7 @@ impl<'a> Case<'a> {
             temperatures_k: (warmest - coldest).max(0.0),
             oil_k: (hottest - cool).max(0.0),
             beginnings: beginnings(&self.fit, &self.bears),
-            lane_rad: mirror::axis_rad(self),
+            lanes_rad: mirror::lanes_rad(self),
             pulls: bearing().any(|run| run.force_n.is_some() || run.pull_n.is_some()),
         }
     }

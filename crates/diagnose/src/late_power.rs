@@ -1,8 +1,9 @@
-//! A power that is measured late: a flow meter behind a pump and a filter, a battery's current from another bus.
+//! A power that is measured late: a flow meter behind a pump and a filter, a battery's current from another bus, or from a logger
+//! whose clock runs apart.
 //!
-//! y(t) = a x(t − d), both without what lasts: y the power that was measured, x the one that the nominal model makes of the rest of
+//! y(t) = a x(t − d), or a x(t − r t), both without what lasts: y the power that was measured, x the one that the nominal model makes of the rest of
 //! the recording, as fast as it is or following with a time constant. What an engine or a pump takes time for follows with a time
-//! constant; a delay is what no time constant explains. d and the time constant are looked for on a grid, a by least squares; that
+//! constant; a delay is what no time constant explains. d or r and the time constant are looked for on a grid, a by least squares; that
 //! residuals of one second are alike is taken for granted. What is told is how late the power is in the mean, by both.
 //!
 //! Source: time delays by correlation of prefiltered signals; Ljung, *System Identification* (1999), section 6.4 and example 17.2.
@@ -17,8 +18,9 @@ use crate::sensors::{interpolate, with_channel};
 use crate::{Case, DiagnoseError};
 use headland_recording::renewed_s;
 
-/// The fault that it is.
+/// The faults that it can be.
 const LATENCY: &str = "latency";
+const DRIFT: &str = "clock_drift";
 /// Signals are brought to one period [s], and delays are tried in steps of it.
 const STEP_S: f64 = 0.05;
 /// The longest delay that is tried [s].
@@ -40,15 +42,34 @@ const LEAST_S: f64 = 0.3;
 /// The model has to explain this share of the power's variance, or there is nothing to compare.
 const EXPLAINED: f64 = 0.3;
 
+/// How a power is late.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum By {
+    /// By as much all the time [s].
+    Delay(f64),
+    /// By this share of the time since the begin.
+    Drift(f64),
+}
+
 /// How late a power is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Late {
     /// Its channels.
     channels: &'static [&'static str],
-    /// The delay [s].
-    value: f64,
-    /// Its standard deviation [s].
+    /// By how much.
+    by: By,
+    /// Its standard deviation [s], or as a share of the time.
     sd: f64,
+}
+
+impl By {
+    /// When what happens at a time is recorded, in a run that begins at `first_s` [s].
+    fn recorded_s(self, time_s: f64, first_s: f64) -> f64 {
+        match self {
+            Self::Delay(delay_s) => time_s + delay_s,
+            Self::Drift(rate) => first_s + (time_s - first_s) / (1.0 - rate),
+        }
+    }
 }
 
 /// A measured power and the modelled one, on one period and without what lasts.
@@ -63,16 +84,18 @@ pub fn late(case: &Case) -> Vec<Late> {
         (Kind::Fuel, &["fuel_rate_kg_s"]),
         (Kind::Battery, &["battery_power_w", "battery_current_a", "battery_voltage_v"]),
     ];
-    if !case.wanted(LATENCY) {
-        return Vec::new();
-    }
     let of = |(kind, channels): (Kind, &'static [&'static str])| {
         let runs = case.runs.iter().zip(&case.nominal);
         let pairs: Vec<Pair> = runs.filter_map(|(run, said)| pair(run, said, kind, channels[0])).collect();
-        let (value, sd) = told(&pairs)?;
+        let (by, sd) = told(&pairs)?;
         let renewal_s =
             case.runs.iter().map(|run| renewed_s(&run.measured.trace, channels[0])).fold(0.0, f64::max);
-        (value > LEAST_S.max(2.0 * renewal_s)).then_some(Late { channels, value, sd })
+        let (id, late_s) = match by {
+            By::Delay(delay_s) => (LATENCY, delay_s),
+            By::Drift(rate) => (DRIFT, rate.abs() * case.longest_s()),
+        };
+        let matters = case.wanted(id) && late_s > LEAST_S.max(2.0 * renewal_s);
+        matters.then_some(Late { channels, by, sd })
     };
     powers.into_iter().filter_map(of).collect()
 }
@@ -81,30 +104,38 @@ pub fn late(case: &Case) -> Vec<Late> {
 pub fn set_right(case: &mut Case, late: Late, usable: &mut [Vec<bool>]) -> Result<Fault, DiagnoseError> {
     for (run, usable) in case.raw.iter_mut().zip(usable) {
         let time_s = run.measured.trace.time_s().to_vec();
+        let recorded_s: Vec<f64> = time_s.iter().map(|time| late.by.recorded_s(*time, time_s[0])).collect();
         for name in late.channels {
             let Some(samples) = run.measured.trace.get(name) else { continue };
-            let sooner = time_s.iter().map(|time| interpolate(&time_s, samples, time + late.value)).collect();
+            let sooner = recorded_s.iter().map(|time| interpolate(&time_s, samples, *time)).collect();
             run.measured.trace = with_channel(&run.measured.trace, name, sooner)?;
         }
         // What a late sensor would have said after the end nobody knows.
-        for (usable, time) in usable.iter_mut().zip(&time_s) {
-            *usable &= time + late.value <= time_s[time_s.len() - 1];
+        for (usable, time) in usable.iter_mut().zip(&recorded_s) {
+            *usable &= *time <= time_s[time_s.len() - 1];
         }
     }
     case.runs.clone_from(&case.raw);
-    let own = |name: &&&str| **name != "battery_power_w";
-    case.late_powers.extend(late.channels.iter().filter(own).map(|name| (*name, late.value)));
+    let (id, size, unit) = match late.by {
+        By::Delay(delay_s) => {
+            let own = |name: &&&str| **name != "battery_power_w";
+            case.late_powers.extend(late.channels.iter().filter(own).map(|name| (*name, delay_s)));
+            (LATENCY, delay_s, "s")
+        }
+        // No description of a recording knows of clocks.
+        By::Drift(rate) => (DRIFT, rate, "1"),
+    };
     case.suppose()?;
     let stretch = |run: &Recorded| place(run, 0, run.measured.trace.len() - 1);
     let stretches: Vec<Interval> = case.runs.iter().map(stretch).collect();
     let half = HALF_95 * late.sd;
     Ok(Fault {
-        id: LATENCY,
+        id,
         channel: late.channels[late.channels.len().min(2) - 1].to_owned(),
-        size: late.value,
-        ci95: Some([late.value - half, late.value + half]),
+        size,
+        ci95: Some([size - half, size + half]),
         leaps: false,
-        unit: "s".to_owned(),
+        unit: unit.to_owned(),
         stretches,
     })
 }
@@ -139,54 +170,109 @@ fn pair(run: &Recorded, said: &Said, kind: Kind, channel: &str) -> Option<Pair> 
     (count as f64 * STEP_S > 2.0 * LASTING_S).then_some(Pair { measured, modelled })
 }
 
-/// The delay that suits all runs best and its standard deviation; none where no delay is needed.
-fn told(pairs: &[Pair]) -> Option<(f64, f64)> {
-    // Steps of a grid.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
-    let steps = (LONGEST_S / STEP_S) as usize;
-    let measured: Vec<Vec<f64>> = pairs.iter().map(|pair| band(&pair.measured)).collect();
-    let samples: usize = measured.iter().map(|one| one.len().saturating_sub(steps)).sum();
-    let independent = samples as f64 * STEP_S / INDEPENDENT_S;
-    let variance = measured.iter().flatten().map(|value| value * value).sum::<f64>();
-    if samples == 0 || variance == 0.0 {
-        return None;
-    }
-    // Sum of squares with each delay, and the time constant that suits it best.
-    let mut left = vec![f64::INFINITY; steps + 1];
-    let mut following_s = vec![0.0; steps + 1];
-    let mut whole = f64::INFINITY;
-    for constant_s in FOLLOWING_S {
-        let following: Vec<Vec<f64>> =
-            pairs.iter().map(|pair| band(&follow(&pair.modelled, constant_s))).collect();
-        for (delay, (left, following_s)) in left.iter_mut().zip(&mut following_s).enumerate() {
-            let (mut square, mut cross, mut own) = (0.0, 0.0, 0.0);
-            for (measured, modelled) in measured.iter().zip(&following) {
-                // The same samples of what was measured for every delay.
-                for (index, value) in measured.iter().enumerate().skip(steps) {
-                    let model = modelled[index - delay];
-                    square += value * value;
-                    cross += value * model;
-                    own += model * model;
+/// How much of what was measured is left with each of some ways to be late.
+struct Left {
+    /// Sums of squares, each with the time constant that suits it best.
+    squares: Vec<f64>,
+    /// Those time constants [s].
+    following_s: Vec<f64>,
+}
+
+impl Left {
+    /// With ways by which a sample was made so many steps before it was recorded.
+    fn with(
+        pairs: &[Pair],
+        measured: &[Vec<f64>],
+        (count, margin): (usize, usize),
+        before: impl Fn(usize, usize) -> usize,
+    ) -> Self {
+        let mut left = Self { squares: vec![f64::INFINITY; count], following_s: vec![0.0; count] };
+        for constant_s in FOLLOWING_S {
+            let following: Vec<Vec<f64>> =
+                pairs.iter().map(|pair| band(&follow(&pair.modelled, constant_s))).collect();
+            for way in 0..count {
+                let (mut square, mut cross, mut own) = (0.0, 0.0, 0.0);
+                for (measured, modelled) in measured.iter().zip(&following) {
+                    // The same samples of what was measured for every way.
+                    for index in margin..measured.len().saturating_sub(margin) {
+                        let (value, model) = (measured[index], modelled[before(way, index)]);
+                        square += value * value;
+                        cross += value * model;
+                        own += model * model;
+                    }
+                }
+                let explained = if own > 0.0 && cross > 0.0 { cross * cross / own } else { 0.0 };
+                if square - explained < left.squares[way] {
+                    (left.squares[way], left.following_s[way]) = (square - explained, constant_s);
                 }
             }
-            whole = square;
-            let explained = if own > 0.0 && cross > 0.0 { cross * cross / own } else { 0.0 };
-            if square - explained < *left {
-                (*left, *following_s) = (square - explained, constant_s);
-            }
         }
+        left
     }
-    let best = (0..=steps).min_by(|one, other| left[*one].total_cmp(&left[*other]))?;
-    let gain = 0.5 * independent * (left[0] / left[best]).ln();
-    if gain < LEAST_GAIN || left[best] > (1.0 - EXPLAINED) * whole || best == steps {
+
+    /// The way that leaves least, and how far around it is as good.
+    fn best(&self, independent: f64) -> Option<(usize, usize)> {
+        let ways = 0..self.squares.len();
+        let best = ways.clone().min_by(|one, other| self.squares[*one].total_cmp(&self.squares[*other]))?;
+        let by_one = self.squares[best] * (2.0 / independent).exp();
+        let near = ways.filter(|way| self.squares[*way] < by_one);
+        Some((best, near.map(|way| way.abs_diff(best)).max().unwrap_or(0).max(1)))
+    }
+
+    /// The same way between those of the grid.
+    fn place(&self, best: usize) -> f64 {
+        best as f64 + between(&self.squares, best)
+    }
+}
+
+/// What suits all runs best, a delay or a clock that runs apart, and its standard deviation; none where neither is needed.
+// Steps of grids.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
+fn told(pairs: &[Pair]) -> Option<(By, f64)> {
+    /// A clock that runs apart is in these steps late by a tenth of a second more or less at the end of the longest run.
+    const RATES_EACH_WAY: usize = 40;
+    /// Growth of ln p from which on it is the clock: a bus that is late is the commoner fault.
+    const CLEARLY: f64 = 5.0;
+    let steps = (LONGEST_S / STEP_S) as usize;
+    let measured: Vec<Vec<f64>> = pairs.iter().map(|pair| band(&pair.measured)).collect();
+    let samples: usize = measured.iter().map(|one| one.len().saturating_sub(2 * steps)).sum();
+    let independent = samples as f64 * STEP_S / INDEPENDENT_S;
+    let whole: f64 = measured
+        .iter()
+        .flat_map(|one| one.iter().skip(steps).take(one.len().saturating_sub(2 * steps)))
+        .map(|value| value * value)
+        .sum();
+    if samples == 0 || whole == 0.0 {
         return None;
     }
-    let by_one = left[best] * (2.0 / independent).exp();
-    let near = (0..=steps).filter(|delay| left[*delay] < by_one);
-    let farthest = near.map(|delay| delay.abs_diff(best)).max().unwrap_or(0).max(1);
+    let longest = measured.iter().map(Vec::len).max().unwrap_or(0) as f64;
+    let gain = |before: f64, after: f64| 0.5 * independent * (before / after).ln();
+    let delays = Left::with(pairs, &measured, (steps + 1, steps), |delay, index| index - delay);
+    let (delay, delay_off) = delays.best(independent)?;
+    // Late by so many steps in a step.
+    let rate_of = |way: f64| (way - RATES_EACH_WAY as f64) * steps as f64 / (RATES_EACH_WAY as f64 * longest);
+    let drifts = Left::with(pairs, &measured, (2 * RATES_EACH_WAY + 1, steps), |way, index| {
+        (index as f64 * (1.0 - rate_of(way as f64))).round() as usize
+    });
+    let (drift, drift_off) = drifts.best(independent)?;
+    let told = |left: &Left, best: usize, ends: &[usize]| {
+        gain(delays.squares[0], left.squares[best]) >= LEAST_GAIN
+            && left.squares[best] <= (1.0 - EXPLAINED) * whole
+            && !ends.contains(&best)
+    };
+    if gain(delays.squares[delay], drifts.squares[drift]) > CLEARLY
+        && told(&drifts, drift, &[0, 2 * RATES_EACH_WAY])
+    {
+        let step = rate_of(drift as f64 + 1.0) - rate_of(drift as f64);
+        return Some((By::Drift(rate_of(drifts.place(drift))), drift_off as f64 * step / 2.0));
+    }
+    if !told(&delays, delay, &[steps]) {
+        return None;
+    }
     // A time constant takes the place of a part of a delay where it smooths a noisy model as well; both are late alike.
-    let whole_s = (best as f64 + between(&left, best)) * STEP_S + following_s[best];
-    Some((whole_s, (farthest as f64 * STEP_S / 2.0).max(following_s[best] / BETWEEN)))
+    let following_s = delays.following_s[delay];
+    let whole_s = delays.place(delay) * STEP_S + following_s;
+    Some((By::Delay(whole_s), (delay_off as f64 * STEP_S / 2.0).max(following_s / BETWEEN)))
 }
 
 /// Where the least of some values lies beside that of the grid, in steps: that of the parabola through it and its neighbours.
@@ -255,15 +341,36 @@ mod tests {
 
     #[test]
     fn a_delay_is_found_and_a_power_that_follows_is_none() {
-        let (delay_s, sd) = told(&pairs(24, 0.0, 3.0)).unwrap();
-        assert!((delay_s - 1.2).abs() <= 0.5 * STEP_S && sd < 0.2, "{delay_s} ± {sd}");
-        let (delay_s, _) = told(&pairs(24, 1.0, 3.0)).unwrap();
-        assert!((delay_s - 2.2).abs() <= 4.0 * STEP_S, "{delay_s}");
+        let delay_s = |pairs: &[Pair]| match told(pairs).unwrap() {
+            (By::Delay(delay_s), sd) => (delay_s, sd),
+            other => panic!("{other:?}"),
+        };
+        let (found_s, sd) = delay_s(&pairs(24, 0.0, 3.0));
+        assert!((found_s - 1.2).abs() <= 0.5 * STEP_S && sd < 0.2, "{found_s} ± {sd}");
+        let (found_s, _) = delay_s(&pairs(24, 1.0, 3.0));
+        assert!((found_s - 2.2).abs() <= 4.0 * STEP_S, "{found_s}");
         assert_eq!(told(&pairs(0, 0.0, 3.0)), None);
         // The least of (x − 1.3)² between points of a grid; at an end there is none beside it.
         let values: Vec<f64> = (0..4).map(|x| (f64::from(x) - 1.3).powi(2)).collect();
         assert!((between(&values, 1) - 0.3).abs() < 1e-12);
         assert_eq!(between(&values, 0), 0.0);
         assert_eq!(told(&pairs(0, 2.0, 3.0)), None);
+    }
+
+    /// Late by a hundredth of the time since the begin, or early: 1.2 s at the end of two minutes.
+    #[test]
+    fn a_clock_that_runs_apart_is_told_from_a_delay() {
+        for rate in [0.01, -0.01] {
+            let mut all = pairs(0, 0.0, 3.0);
+            for pair in &mut all {
+                let last = pair.measured.len() - 1;
+                let at = |index: usize| (index as f64 * (1.0 - rate)).round() as usize;
+                let drifted = (0..=last).map(|index| pair.measured[at(index).min(last)]).collect();
+                pair.measured = drifted;
+            }
+            let Some((By::Drift(found), sd)) = told(&all) else { panic!("no drift at {rate}") };
+            assert!((found - rate).abs() < 2.0 * sd && sd < 1e-3, "{found} ± {sd} for {rate}");
+            assert!((By::Drift(found).recorded_s(100.0, 0.0) - 100.0 / (1.0 - found)).abs() < 1e-9);
+        }
     }
 }

@@ -67,9 +67,9 @@ pub fn axis_rad(case: &Case) -> Option<f64> {
     line_rad([sum(0), sum(1), sum(2)])
 }
 
-/// Whether each run went along a line of its own.
-pub fn went_straight(case: &Case) -> bool {
-    resultants(case).is_some_and(|each| each.into_iter().all(|one| one[2] == 0.0 || line_rad(one).is_some()))
+/// The lines along which runs went, one for each that moved, clockwise from north [rad]; none where any of them turned.
+pub fn lanes_rad(case: &Case) -> Option<Vec<f64>> {
+    resultants(case)?.into_iter().filter(|one| one[2] > 0.0).map(line_rad).collect()
 }
 
 /// The line of doubled headings whose cosines and sines sum to this, over so many samples; none where they go in more directions.

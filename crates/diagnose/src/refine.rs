@@ -64,7 +64,7 @@ impl Cured {
     /// Tells what of a wind blows along the line of all runs, from its parts, whose estimates are correlated.
     fn told_along(&mut self, case: &Case, correlation: f64) {
         if self.cause.blows_by_run() {
-            self.lane = self.strongest().filter(|_| mirror::went_straight(case));
+            self.lane = self.strongest().filter(|_| mirror::lanes_rad(case).is_some());
         }
         let ([north, east, ..], true) = (&self.values[..], is_whole(&self.cause)) else { return };
         let known = |(value, ci95): &(f64, [f64; 2])| (*value, (ci95[1] - ci95[0]) / (2.0 * HALF_95));

@@ -26,7 +26,9 @@ fn doubtful(first: &Diagnosis) -> Vec<&'static str> {
     let found = |id: &str| first.findings.iter().find(|finding| finding.id == id);
     let level = |map: &FindingReport| map.indistinguishable_from.iter().any(|rival| rival.id == LEVEL);
     let map = found(MAP).is_some_and(|map| leaves || level(map)).then_some(MAP);
-    let clock = (leaves && found(CLOCK).is_some()).then_some(CLOCK);
+    // What a channel shows by itself was sought by no search.
+    let sought = |clock: &FindingReport| clock.evidence[0] > 0.0;
+    let clock = (leaves && found(CLOCK).is_some_and(sought)).then_some(CLOCK);
     map.into_iter().chain(clock).collect()
 }
 

@@ -16,7 +16,7 @@ use crate::balance::Kind;
 use cause::{LIMIT, cause};
 use powers::powers;
 use sensors::sensors;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{PI, TAU};
 use term::{linear, positive, shape};
 
 /// What the vehicle and its runs are like, for scales and grids.
@@ -60,8 +60,8 @@ pub struct Around {
     pub pulls: bool,
     /// Runs that may have begun otherwise than the others, by number.
     pub beginnings: Vec<usize>,
-    /// The line along which all runs went, clockwise from north [rad]; none where they went in more directions.
-    pub lane_rad: Option<f64>,
+    /// The lines along which runs went, one for each, clockwise from north [rad]; none where any of them turned.
+    pub lanes_rad: Option<Vec<f64>>,
 }
 
 /// Shares of the greatest speed at which a drag may set in, beyond most of the samples.
@@ -245,15 +245,25 @@ fn by_run(around: &Around, pull: Term) -> [Cause; 4] {
     ]
 }
 
-/// A wind that blows otherwise in each run, to and fro along one axis: that of the lane, where all runs went along one line, and else
-/// the one that the runs tell, by that end of it which lies in the south.
+/// A wind that blows otherwise in each run, to and fro along one axis. Runs that each went along a line show no more than what blows
+/// along that, whatever the axis: it is one that lies across none of them. Else it is the one that the runs tell.
 fn wind_by_run(around: &Around) -> Cause {
-    const AXES: u8 = 8;
-    let (from_rad, axes) = if let Some(lane_rad) = around.lane_rad {
-        (shape("from_rad", "rad").held(lane_rad), vec![vec![lane_rad]])
+    /// Between so many axes a wind is never far from one of them, and turned to where it blows later.
+    const AXES: u8 = 3;
+    /// So many are thought of, where it does not matter.
+    const THOUGHT_OF: u8 = 16;
+    let axis = |place: u8, count: u8| PI * f64::from(place) / f64::from(count);
+    let (from_rad, axes) = if let Some(lanes_rad) = &around.lanes_rad {
+        let across = |axis_rad: f64| {
+            lanes_rad.iter().map(|lane_rad| (axis_rad - lane_rad).cos().abs()).fold(1.0, f64::min)
+        };
+        let axes =
+            lanes_rad.iter().copied().take(1).chain((0..THOUGHT_OF).map(|place| axis(place, THOUGHT_OF)));
+        let best_rad = axes.max_by(|one, other| across(*one).total_cmp(&across(*other))).unwrap_or(0.0);
+        (shape("from_rad", "rad").held(best_rad), vec![vec![best_rad]])
     } else {
-        let axis = |place: u8| FRAC_PI_2 + PI * (f64::from(place) + 0.5) / f64::from(AXES);
-        (shape("from_rad", "rad").within(0.0, TAU), (0..AXES).map(|place| vec![axis(place)]).collect())
+        let axes = (0..AXES).map(|place| vec![axis(place, AXES)]).collect();
+        (shape("from_rad", "rad").within(-PI, TAU), axes)
     };
     cause(
         "wind",

@@ -106,6 +106,7 @@ pub fn faulty(fault: &Fault, system: &System) -> FindingReport {
             name: match fault.id {
                 "speed_scale" => "scale",
                 "latency" => "latency_s",
+                "clock_drift" => "rate",
                 _ => "size",
             }
             .to_owned(),
@@ -285,9 +286,9 @@ fn spells(case: &Case, events: &[Event]) -> Vec<Interval> {
 
 /// Where a wind comes from that blows otherwise in each run, its strongest as it is there.
 fn blown(told: &mut [ParameterReport], cured: &Cured) -> ParameterReport {
-    /// Half of what lies between two axes that are tried [rad]; runs that each went along a line tell nothing of the axis.
-    const HALF_RAD: f64 = std::f64::consts::PI / 16.0;
-    let half_rad = if cured.lane.is_some() { std::f64::consts::PI } else { HALF_RAD };
+    /// An axis that is turned until the runs tell it best is about as near [rad]; those that each went along a line tell nothing of it.
+    const NEAR_RAD: f64 = 0.2;
+    let half_rad = if cured.lane.is_some() { std::f64::consts::PI } else { NEAR_RAD };
     let turned = told.first().is_some_and(|peak| peak.value < 0.0);
     if let (true, Some(peak)) = (turned, told.first_mut()) {
         peak.value = -peak.value;

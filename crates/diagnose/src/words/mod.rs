@@ -224,6 +224,11 @@ pub fn fault(fault: &crate::faults::Fault) -> String {
              it was corrected.",
             with_interval(fault.size, fault.ci95.unwrap_or([fault.size; 2]), &fault.unit)
         ),
+        "clock_drift" => format!(
+            "{channel} is later from minute to minute than what it is the power of, or earlier, by {} ms in each second: a clock that \
+             runs apart; it was corrected.",
+            with_interval(1e3 * fault.size, fault.ci95.unwrap_or([fault.size; 2]).map(|end| 1e3 * end), "")
+        ),
         "latency" => format!(
             "{channel} goes on as it was for {} at the begin of the coast-downs: the sensor is late; it was corrected.",
             with_interval(fault.size, fault.ci95.unwrap_or([fault.size; 2]), &fault.unit)

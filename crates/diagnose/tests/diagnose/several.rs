@@ -48,6 +48,47 @@ fn a_resistance_that_differs_from_run_to_run_is_told_as_that() {
     assert!((along("r3") - along("r2") - expected_n).abs() < 0.15 * expected_n.abs(), "{}", along("r3"));
 }
 
+/// One day it blew from the north, and another day from the south; the lane lies between the two. One wind for all runs would be none,
+/// and what each run has of it was told as a load or as drag that come and go.
+#[test]
+fn a_wind_that_turned_between_two_days_is_told_by_what_it_was_in_each_run() {
+    const NORTH_M_S: f64 = 7.0;
+    const SOUTH_M_S: f64 = 5.0;
+    let day = |speed_m_s: f64, from_rad: f64| {
+        recorded(0.069, &format!("wind(speed_m_s: {speed_m_s:?}, from_rad: {from_rad:?})"))
+    };
+    let (first, second) = (day(NORTH_M_S, 0.0), day(SOUTH_M_S, std::f64::consts::PI));
+    let mut both = first.clone();
+    let count = both.runs.len();
+    for (run, recorded) in both.runs.iter_mut().enumerate() {
+        if run >= count / 2 {
+            *recorded = second.runs[run].clone();
+        }
+    }
+    let found = found(&both, &Options::default()).unwrap();
+    let findings = &found.diagnosis.findings;
+    assert!(findings.len() == 1 && findings[0].id == "wind", "{}", found.diagnosis.answer);
+    assert!(findings[0].sentence.contains("differs from run to run"), "{}", findings[0].sentence);
+    // The stronger one, which came from ahead or from behind, and nobody knows what blew across.
+    let [speed, .., from] = &findings[0].parameters[..] else { panic!("{:?}", findings[0].parameters) };
+    assert!(speed.ci95[0] < NORTH_M_S && NORTH_M_S < speed.ci95[1], "{speed:?}");
+    assert!(from.name == "from_rad" && from.ci95[1] - from.ci95[0] > 6.0, "{from:?}");
+    // Against the vehicle northwards on the first day, and with it on the second.
+    let mean_n = |run: usize| {
+        let own = &found.effects[run];
+        let values = own.trace.get("wind_n").unwrap();
+        let known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+        known.iter().sum::<f64>() / known.len() as f64
+    };
+    let northward = |run: usize| if run.is_multiple_of(2) { 1.0 } else { -1.0 };
+    for run in 0..count {
+        let ahead = if run < count / 2 { northward(run) } else { -northward(run) };
+        assert!(mean_n(run) * ahead < 0.0, "run {run}: {} N", mean_n(run));
+    }
+    let held = found.diagnosis.fit.held_out.as_ref().unwrap();
+    assert!(held.rmse_after < 0.3 * held.rmse_before, "{held:?}");
+}
+
 /// The force is made of the motor's torque; how much of it comes through the gears is known to a few per cent.
 #[test]
 fn a_gear_that_loses_a_little_more_is_calibrated_and_no_loss_is_claimed() {

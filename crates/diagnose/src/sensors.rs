@@ -16,6 +16,8 @@ pub const PITCH: &str = "pitch";
 pub const PITCH_RAD_S2_M: f64 = 0.004;
 /// A scale that nobody would call wrong.
 const SMALL_SCALE: f64 = 0.005;
+/// An offset of an accelerometer that nobody would call wrong [m/s²]: half of what the least vibration makes of it, 1 to 10 mg.
+const SMALL_BIAS_M_S2: f64 = 0.005;
 
 /// A fault that is free in every diagnosis.
 pub struct Small {
@@ -45,11 +47,13 @@ pub fn is_no_fault(case: &Case, id: &str, value: f64) -> bool {
         "clock_drift" => value.abs() * case.longest_s() <= small_latency_s(case),
         "speed_scale" => !(SMALL_SCALE..=MOST_SPEED_SCALE).contains(&value.abs()),
         "force_scale" => !(SMALL_SCALE..=MOST_SCALE).contains(&value.abs()),
+        "accelerometer_bias" => value.abs() <= 2.0 * SMALL_BIAS_M_S2,
+        "accelerometer_tilt" => value.abs() * STANDARD_GRAVITY_M_S2 <= 2.0 * SMALL_BIAS_M_S2,
         _ => false,
     }
 }
 
-/// What every sensor does a little: a sampling period of latency, half a per cent of scale. Nobody would call it a
+/// What every sensor does a little: a sampling period of latency, half a per cent of scale, half a thousandth of gravity. Nobody would call it a
 /// fault, and it must not be taken for physics; so it is free throughout.
 pub fn small_faults(case: &Case, system: &System) -> Result<Vec<Small>, DiagnoseError> {
     let small = [
@@ -57,6 +61,7 @@ pub fn small_faults(case: &Case, system: &System) -> Result<Vec<Small>, Diagnose
         (Kind::Motion, "force_scale", SMALL_SCALE),
         (Kind::Motion, "speed_scale", SMALL_SCALE),
         (Kind::Parity, PITCH, PITCH_RAD_S2_M),
+        (Kind::Parity, "accelerometer_bias", SMALL_BIAS_M_S2),
     ];
     let mut all = Vec::new();
     // What was corrected before is free by far more than a little, and once is enough.

@@ -213,6 +213,15 @@ fn without(text: &mut String, scored: &[Scored]) {
     row("a wrong listed cause is claimed", all.iter().filter(claims).count(), "≤ 10 %");
     let no_twin = |outcome: &&&Outcome| claims(outcome) && !outcome.twin;
     row("and it is no twin of the true one", all.iter().filter(no_twin).count(), "");
+    // What differs by a constant alone is the same force beside a free coefficient.
+    const ALIKE: f64 = 0.95;
+    let alike = |outcome: &Outcome| outcome.reconstruction.is_some_and(|force| force.correlation >= ALIKE);
+    let another = |outcome: &&&Outcome| claims(outcome) && !alike(outcome);
+    row(
+        "and its force goes otherwise than the true one (correlation below 0.95)",
+        all.iter().filter(another).count(),
+        "",
+    );
     let doubts = |outcome: &&&Outcome| outcome.verdict == "cannot_tell";
     row("it is said that one cannot tell", all.iter().filter(doubts).count(), "");
     let unlisted = |outcome: &&&Outcome| outcome.verdict == "unlisted";

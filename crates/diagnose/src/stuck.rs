@@ -111,6 +111,17 @@ fn leaping(values: &[f64]) -> impl Fn(usize, usize) -> bool {
     }
 }
 
+/// Whether a channel changes by one and the same step, if it does: then it waits for the next one, and what keeps its speed has it wait
+/// long.
+fn waits(values: &[f64]) -> bool {
+    /// Four steps of five are as large as the smallest but for a few.
+    const MOST: f64 = 0.8;
+    const LEAST: f64 = 0.05;
+    const THE_SAME: f64 = 1.05;
+    let steps = changes(values);
+    !steps.is_empty() && quantile_of_sorted(&steps, MOST) < THE_SAME * quantile_of_sorted(&steps, LEAST)
+}
+
 /// By how much a channel changes where it does, the least first.
 fn changes(values: &[f64]) -> Vec<f64> {
     let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
@@ -177,9 +188,10 @@ pub fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Optio
         let equal = still(values);
         let own_noise = noisy(values, &equal);
         noisy_everywhere &= own_noise || renews(values);
-        let leaps = leaping(values);
+        let (leaps, waits) = (leaping(values), waits(values));
         let moving: Vec<bool> = drive.motion.value.iter().map(|speed_m_s| *speed_m_s > SLOWEST_M_S).collect();
-        let long = stuck_while(&moving, time_s, (values, &equal), own_noise, &leaps);
+        let mut long = stuck_while(&moving, time_s, (values, &equal), own_noise, &leaps);
+        long.retain(|(from, to)| !waits || leaps(*from, *to));
         if long.is_empty() {
             continue;
         }
@@ -242,6 +254,18 @@ mod tests {
     }
 
     /// On its way down by 0.08 a sample, held for ten samples: it catches up with what it would have come meanwhile.
+    /// In steps of 1 km/h, with a noise of a tenth of that, at an even speed and on the way to it.
+    #[test]
+    fn a_channel_of_coarse_steps_waits_for_the_next_one() {
+        let mut draws = Draws::new(5, 0);
+        let mut of = |resolution: f64| -> Vec<f64> {
+            let speed = |row: usize| 0.05 * row.min(250) as f64 + 0.03 * draws.normal();
+            (0..500).map(speed).map(|speed| (speed / resolution).round() * resolution).collect()
+        };
+        assert!(waits(&of(1.0 / 3.6)));
+        assert!(!waits(&of(0.01)));
+    }
+
     #[test]
     fn a_channel_that_catches_up_was_stuck() {
         let held = |at: usize| if (14..24).contains(&at) { 14 } else { at };

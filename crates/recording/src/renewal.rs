@@ -12,6 +12,10 @@ const SPACED: f64 = 0.9;
 /// A channel that is held has no more than this share of renewals that come too early: a coarse value that happens to come
 /// several times is renewed at once as often as not.
 const EARLY: f64 = 0.1;
+/// A channel that stays as it is, and not at nought, for more than this many times what is usual between its renewals ...
+const LONG: usize = 3;
+/// ... in more than this share of its rows is coarse: what changes evenly takes its steps regularly, until it is held.
+const MOSTLY: f64 = 0.1;
 /// Fewer samples than this are few.
 const FEW: usize = 5;
 /// Renewals are regular where this share of them comes after the usual number of samples, or whole times that.
@@ -82,6 +86,12 @@ pub fn renewals(values: &[f64]) -> Option<Vec<usize>> {
     if !(2..=LONGEST).contains(&usual) || share(&early) > EARLY || share(&once) < REGULAR {
         return None;
     }
+    let moving = values.iter().filter(|value| value.is_finite() && **value != 0.0).count();
+    let held = changes.windows(2).filter(|pair| values[pair[0]] != 0.0).map(|pair| pair[1] - pair[0]);
+    let held: usize = held.filter(|step| *step > LONG * usual).sum();
+    if held as f64 > MOSTLY * moving as f64 {
+        return None;
+    }
     let regular: Vec<usize> = steps.iter().copied().filter(|step| once(*step)).collect();
     let (rows, count) = (regular.iter().sum::<usize>(), regular.len());
     let mut all = Vec::new();
@@ -112,6 +122,22 @@ mod tests {
         let mut trace = Trace::new((0..500).map(|index| 0.02 * f64::from(index)).collect()).unwrap();
         trace.push("speed_m_s", (0..500).map(value).collect(), headland_trace::Origin::Measured).unwrap();
         renewed_s(&trace, "speed_m_s")
+    }
+
+    /// A speed in steps of 1 km/h, of a vehicle that speeds up evenly, holds its speed and slows down evenly.
+    #[test]
+    fn a_coarse_channel_that_changes_evenly_is_not_renewed_slowly() {
+        let speed = |row: usize| match row {
+            0..200 => 0.08 * row as f64,
+            200..500 => 16.0,
+            _ => 16.0 - 0.08 * (row - 500) as f64,
+        };
+        let values: Vec<f64> = (0..700).map(|row| (3.6 * speed(row)).round() / 3.6).collect();
+        assert_eq!(renewals(&values), None);
+        // The same vehicle, by a receiver that gives a value in one row of three.
+        let slow: Vec<f64> =
+            (0..700).map(|row| speed(row - row % 3) + 0.01 * ((row / 3) as f64).sin()).collect();
+        assert_eq!(renewals(&slow).map(|rows| rows.len()), Some(234));
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! A power that is measured late: a flow meter behind a pump and a filter, a battery's current from another bus, or from a logger
 //! whose clock runs apart.
 //!
-//! y(t) = a x(t − d), or a x(t − r t), both without what lasts: y the power that was measured, x the one that the nominal model makes of the rest of
-//! the recording, as fast as it is or following with a time constant. What an engine or a pump takes time for follows with a time
-//! constant; a delay is what no time constant explains. d or r and the time constant are looked for on a grid, a by least squares; that
-//! residuals of one second are alike is taken for granted. What is told is how late the power is in the mean, by both.
+//! y(t) = a x(t − d), or a x(t − r t), both without what lasts: y the power that was measured, x the one that the nominal model
+//! makes of the rest of the recording, as fast as it is or following with a time constant. What an engine or a pump takes time for
+//! follows with a time constant; a delay is what no time constant explains. d or r and the time constant are looked for on a grid, a
+//! by least squares; that residuals of one second are alike is taken for granted. What is told is how late the power is in the
+//! mean, by both.
 //!
 //! Source: time delays by correlation of prefiltered signals; Ljung, *System Identification* (1999), section 6.4 and example 17.2.
 
@@ -225,6 +226,12 @@ impl Left {
     }
 }
 
+/// The sample that a clock which runs apart gives as the one at `index`.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
+fn drifted(index: usize, rate: f64) -> usize {
+    (index as f64 * (1.0 - rate)).round() as usize
+}
+
 /// What suits all runs best, a delay or a clock that runs apart, and its standard deviation; none where neither is needed.
 // Steps of grids.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
@@ -252,7 +259,7 @@ fn told(pairs: &[Pair]) -> Option<(By, f64)> {
     // Late by so many steps in a step.
     let rate_of = |way: f64| (way - RATES_EACH_WAY as f64) * steps as f64 / (RATES_EACH_WAY as f64 * longest);
     let drifts = Left::with(pairs, &measured, (2 * RATES_EACH_WAY + 1, steps), |way, index| {
-        (index as f64 * (1.0 - rate_of(way as f64))).round() as usize
+        drifted(index, rate_of(way as f64))
     });
     let (drift, drift_off) = drifts.best(independent)?;
     let told = |left: &Left, best: usize, ends: &[usize]| {
@@ -364,9 +371,8 @@ mod tests {
             let mut all = pairs(0, 0.0, 3.0);
             for pair in &mut all {
                 let last = pair.measured.len() - 1;
-                let at = |index: usize| (index as f64 * (1.0 - rate)).round() as usize;
-                let drifted = (0..=last).map(|index| pair.measured[at(index).min(last)]).collect();
-                pair.measured = drifted;
+                let own = (0..=last).map(|index| pair.measured[drifted(index, rate).min(last)]).collect();
+                pair.measured = own;
             }
             let Some((By::Drift(found), sd)) = told(&all) else { panic!("no drift at {rate}") };
             assert!((found - rate).abs() < 2.0 * sd && sd < 1e-3, "{found} ± {sd} for {rate}");

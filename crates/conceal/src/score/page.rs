@@ -202,6 +202,8 @@ fn by(text: &mut String, scored: &[Scored], what: &str, key: impl Fn(&Scored, us
 }
 
 fn without(text: &mut String, scored: &[Scored]) {
+    /// What differs by a constant alone is the same force beside a free coefficient.
+    const ALIKE: f64 = 0.95;
     text.push_str("| what | share | 95 % interval (Wilson) | cases | goal |\n|---|---|---|---|---|\n");
     let all: Vec<&Outcome> = scored.iter().filter_map(|one| one.outcome.as_ref().ok()).collect();
     let mut row = |what: &str, hits: usize, goal: &str| {
@@ -213,8 +215,6 @@ fn without(text: &mut String, scored: &[Scored]) {
     row("a wrong listed cause is claimed", all.iter().filter(claims).count(), "≤ 10 %");
     let no_twin = |outcome: &&&Outcome| claims(outcome) && !outcome.twin;
     row("and it is no twin of the true one", all.iter().filter(no_twin).count(), "");
-    // What differs by a constant alone is the same force beside a free coefficient.
-    const ALIKE: f64 = 0.95;
     let alike = |outcome: &Outcome| outcome.reconstruction.is_some_and(|force| force.correlation >= ALIKE);
     let another = |outcome: &&&Outcome| claims(outcome) && !alike(outcome);
     row(

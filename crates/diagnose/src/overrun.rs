@@ -20,16 +20,20 @@ const ONE_PLACE_M: f64 = 20.0;
 
 /// The samples at which the model's engine takes no fuel and that of the vehicle may: the force follows from the motion in a run
 /// whose brakes were not recorded, or the fuel itself says that the engine went on to burn. Then whatever slows the wheels may be
-/// their brakes.
+/// their brakes; and so it may where both the force at the wheels and the engine's own torque were measured and hold back, but for
+/// a switch that says that nobody braked.
 pub fn overruns(run: &Recorded, said: &Said) -> Vec<bool> {
     let Some(modelled) = &said.fuel_kg_s else { return vec![false; run.measured.trace.len()] };
-    let brake = run.measured.trace.get("brake").is_some();
+    let switch = run.measured.trace.get("brake");
+    let brake = switch.is_some();
     let measured = run.measured.trace.get("fuel_rate_kg_s");
     let burns = measured.is_some_and(|measured| goes_on_to_burn(measured, modelled));
     let of = |(sample, modelled): (usize, &f64)| {
         let force_n = run.force_n.as_ref().map_or(f64::NAN, |force_n| force_n[sample]);
         let cut = *modelled <= 0.0;
-        cut && !force_n.is_finite() && !brake || burns && (cut || force_n < 0.0)
+        let held_back = run.engine_w.as_ref().is_some_and(|power_w| power_w[sample] < 0.0) && force_n < 0.0;
+        let may_brake = switch.is_none_or(|switch| !(switch[sample] < 0.5));
+        cut && !force_n.is_finite() && !brake || burns && (cut || force_n < 0.0) || held_back && may_brake
     };
     modelled.iter().enumerate().map(of).collect()
 }

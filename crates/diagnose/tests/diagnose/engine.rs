@@ -1,10 +1,11 @@
 //! What is told by the torque or the fuel of an engine, and what an engine does that is no physics.
 
+use super::changed;
 use super::setting::{found_of_scenario, named, recording_of_scenario};
 use headland_calibrate::statistics::Draws;
-use headland_diagnose::Options;
+use headland_diagnose::{Options, Verdict};
 use headland_recording::RecordedRun;
-use headland_trace::Origin;
+use headland_trace::{Origin, Trace};
 use std::sync::LazyLock;
 
 const SCENARIO: &str = r#"(
@@ -86,6 +87,17 @@ static LONG: LazyLock<String> = LazyLock::new(|| {
     SCENARIO.replacen(STANDS, &levels, 1).replacen(RUNS, SPEEDS, 1).replacen("sd: 2000", "sd: 700", 1)
 });
 
+/// A speed by radar, and what an engine's own bus says of it.
+fn by_bus(name: &str, value: f64, draws: &mut Draws) -> f64 {
+    match name {
+        "speed_m_s" => value + 0.01 * draws.normal(),
+        "tractive_force_n" => value + 100.0 * draws.normal(),
+        "engine_torque_n_m" => value + 4.0 * draws.normal(),
+        "engine_speed_rad_s" => value + 0.2 * draws.normal(),
+        _ => value,
+    }
+}
+
 /// A flag tells when a vehicle rolls freely, and nothing tells what drives it else: the torque of the engine shows what is lost
 /// on the way to the wheels.
 #[test]
@@ -94,14 +106,8 @@ fn a_loss_between_engine_and_wheels_is_told_beside_a_flag_of_coasting() {
     let text =
         SCENARIO.replacen(STANDS, ROLLS, 1).replacen(RUNS, APART, 1).replacen("sd: 2000", "sd: 700", 1);
     let truth = text.replacen("    free:", "    effects: [driveline_efficiency(loss: 0.09)],\n    free:", 1);
-    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
-        "speed_m_s" => value + 0.01 * draws.normal(),
-        "engine_torque_n_m" => value + 4.0 * draws.normal(),
-        "engine_speed_rad_s" => value + 0.2 * draws.normal(),
-        _ => value,
-    };
     let channels = ["speed_m_s", "engine_torque_n_m", "engine_speed_rad_s", "coasting"];
-    let recording = recording_of_scenario(&truth, &registry, &channels, (41, &noisy));
+    let recording = recording_of_scenario(&truth, &registry, &channels, (41, &by_bus));
     let found = found_of_scenario(&text, &recording, &Options::default(), &registry).unwrap();
     let diagnosis = &found.diagnosis;
     assert!(named(&found, "driveline_efficiency"), "{}", diagnosis.answer);
@@ -110,6 +116,37 @@ fn a_loss_between_engine_and_wheels_is_told_beside_a_flag_of_coasting() {
     assert!(diagnosis.findings.iter().all(|finding| finding.id != "engine_friction"), "{}", diagnosis.answer);
     // What nothing drives forward is told by the power of the engine.
     assert_eq!(diagnosis.fit.signal, "engine_power_w");
+}
+
+/// Brakes hold the wheels at which the force was measured, and the engine, which they drive, turns more slowly than that of the model:
+/// its torque says no more there than that it was driven. Accessories gave way to it, and a law that nobody listed was in sight.
+#[test]
+fn an_engine_that_is_driven_while_brakes_work_tells_of_nothing() {
+    /// The gearbox does not shift down.
+    const SLOWER: f64 = 0.6;
+    let registry = headland_stock::registry();
+    let text = SCENARIO
+        .replacen(
+            "Reach(speed_m_s: 0, acceleration_m_s2: 0.4)",
+            "Reach(speed_m_s: 0, acceleration_m_s2: 1.2)",
+            2,
+        )
+        .replacen("sd: 2000", "sd: 400", 1)
+        .replacen("    replay: (drive: Speed, least_acceleration_m_s2: -0.2),\n", "", 1);
+    let channels =
+        ["speed_m_s", "tractive_force_n", "engine_torque_n_m", "engine_speed_rad_s", "brake_force_n"];
+    let recording = recording_of_scenario(&text, &registry, &channels, (47, &by_bus));
+    let of = |trace: &Trace, name: &str, sample: usize| trace.get(name).unwrap()[sample];
+    let recording = changed(&recording, "tractive_force_n", |force_n, trace, sample| {
+        force_n - of(trace, "brake_force_n", sample).abs()
+    });
+    let recording = changed(&recording, "engine_speed_rad_s", |speed_rad_s, trace, sample| {
+        if of(trace, "engine_torque_n_m", sample) < 0.0 { SLOWER * speed_rad_s } else { speed_rad_s }
+    });
+    let found = found_of_scenario(&text, &recording, &Options::default(), &registry).unwrap().diagnosis;
+    assert_eq!(found.verdict, Verdict::None, "{}", found.answer);
+    let accessories = found.calibrated.iter().find(|one| one.name == "accessory_power_w").unwrap();
+    assert!((accessories.value - 9000.0).abs() < 800.0, "{accessories:?}");
 }
 
 /// What pulls beyond a speed with the square of what is above it, of which only the engine's torque and the coast-downs between tell:
@@ -121,14 +158,8 @@ fn a_force_that_nobody_listed_is_told_by_the_torque_of_an_engine() {
     let text =
         SCENARIO.replacen(STANDS, ROLLS, 1).replacen(RUNS, APART, 1).replacen("sd: 2000", "sd: 700", 1);
     let truth = text.replacen("    free:", &format!("    effects: [{LAW}],\n    free:"), 1);
-    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
-        "speed_m_s" => value + 0.01 * draws.normal(),
-        "engine_torque_n_m" => value + 4.0 * draws.normal(),
-        "engine_speed_rad_s" => value + 0.2 * draws.normal(),
-        _ => value,
-    };
     let channels = ["speed_m_s", "engine_torque_n_m", "engine_speed_rad_s", "coasting"];
-    let recording = recording_of_scenario(&truth, &registry, &channels, (43, &noisy));
+    let recording = recording_of_scenario(&truth, &registry, &channels, (43, &by_bus));
     let found = found_of_scenario(&text, &recording, &Options::default(), &registry).unwrap();
     let said = &found.diagnosis;
     assert!(named(&found, "unlisted"), "{}", said.answer);

@@ -32,7 +32,7 @@ pub fn overruns(run: &Recorded, said: &Said) -> Vec<bool> {
         let force_n = run.force_n.as_ref().map_or(f64::NAN, |force_n| force_n[sample]);
         let cut = *modelled <= 0.0;
         let held_back = run.engine_w.as_ref().is_some_and(|power_w| power_w[sample] < 0.0) && force_n < 0.0;
-        let may_brake = switch.is_none_or(|switch| !(switch[sample] < 0.5));
+        let may_brake = switch.is_none_or(|switch| switch[sample] >= 0.5 || switch[sample].is_nan());
         cut && !force_n.is_finite() && !brake || burns && (cut || force_n < 0.0) || held_back && may_brake
     };
     modelled.iter().enumerate().map(of).collect()

@@ -33,7 +33,7 @@ const ACCELEROMETER_M_S2: f64 = 0.05;
 const SHAKEN_M_S2: f64 = 0.02;
 /// The shaking of neighbouring rows is alike.
 const SHAKEN_PERSISTENCE: f64 = 0.7;
-/// An accelerometer's offset, which is free where one is proposed, and its usual size [m/s²].
+/// An accelerometer's offset, which is free by its usual size where one is proposed: nobody has told it yet [m/s²].
 const OFFSET: &str = "accelerometer_bias";
 const OFFSET_M_S2: f64 = 0.15;
 
@@ -120,7 +120,9 @@ impl<'a> Stage<'a> {
         let mut pool = nuisance(&stage, &system)?;
         if bare && system.has(Kind::Parity) {
             for (id, sd) in [(OFFSET, OFFSET_M_S2), (PITCH, PITCH_RAD_S2_M)] {
-                if !pool.small.iter().any(|(known, _)| *known == id) {
+                if let Some((_, column)) = pool.small.iter().find(|(known, _)| *known == id) {
+                    pool.sd[*column] = sd;
+                } else {
                     pool.small.push((id, pool.columns.len()));
                     pool.columns.push(fault(&stage, &system, id, sd)?);
                     pool.sd.push(sd);

@@ -95,7 +95,9 @@ pub fn late(case: &Case) -> Vec<Late> {
             By::Delay(delay_s) => (LATENCY, delay_s),
             By::Drift(rate) => (DRIFT, rate.abs() * case.longest_s()),
         };
-        let matters = case.wanted(id) && late_s > LEAST_S.max(2.0 * renewal_s);
+        // An engine follows in its own time, which differs from begin to end of a drive as its load does: fuel tells of no clock.
+        let told = kind == Kind::Battery || id == LATENCY;
+        let matters = told && case.wanted(id) && late_s > LEAST_S.max(2.0 * renewal_s);
         matters.then_some(Late { channels, by, sd })
     };
     powers.into_iter().filter_map(of).collect()
@@ -239,7 +241,7 @@ fn told(pairs: &[Pair]) -> Option<(By, f64)> {
     /// A clock that runs apart is in these steps late by a tenth of a second more or less at the end of the longest run.
     const RATES_EACH_WAY: usize = 40;
     /// Growth of ln p from which on it is the clock: a bus that is late is the commoner fault.
-    const CLEARLY: f64 = 5.0;
+    const CLEARLY: f64 = 20.0;
     let steps = (LONGEST_S / STEP_S) as usize;
     let measured: Vec<Vec<f64>> = pairs.iter().map(|pair| band(&pair.measured)).collect();
     let samples: usize = measured.iter().map(|one| one.len().saturating_sub(2 * steps)).sum();

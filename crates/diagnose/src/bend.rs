@@ -129,7 +129,8 @@ fn blowing(case: &Case, system: &System, pool: &Pool, found: &Found) -> Option<(
     Some((vec![Part { spread: Some(spread), ..part }], 0))
 }
 
-/// What a wind is in each run [m/s], at the begin of it: knots are further apart than any run is long. Where it is next to nothing, its column is that of a little.
+/// What a wind is in each run [m/s], at the begin of it: knots are further apart than any run is long. Where it is next to nothing,
+/// its column is that of a little.
 fn levels_m_s(stand: &Stand, place: usize) -> Option<Vec<f64>> {
     const LEAST_M_S: f64 = 0.5;
     let even = stand.estimate.beta[stand.position(stand.parts[place].trial.columns[0])?];

@@ -88,16 +88,16 @@ pub fn late(case: &Case) -> Vec<Late> {
     let of = |(kind, channels): (Kind, &'static [&'static str])| {
         let runs = case.runs.iter().zip(&case.nominal);
         let pairs: Vec<Pair> = runs.filter_map(|(run, said)| pair(run, said, kind, channels[0])).collect();
-        let (by, sd) = told(&pairs)?;
+        // An engine follows in its own time, which differs from begin to end of a drive as its load does: fuel tells of no clock.
+        let clocks = kind == Kind::Battery && case.wanted(DRIFT);
+        let (by, sd) = told(&pairs, clocks)?;
         let renewal_s =
             case.runs.iter().map(|run| renewed_s(&run.measured.trace, channels[0])).fold(0.0, f64::max);
         let (id, late_s) = match by {
             By::Delay(delay_s) => (LATENCY, delay_s),
             By::Drift(rate) => (DRIFT, rate.abs() * case.longest_s()),
         };
-        // An engine follows in its own time, which differs from begin to end of a drive as its load does: fuel tells of no clock.
-        let told = kind == Kind::Battery || id == LATENCY;
-        let matters = told && case.wanted(id) && late_s > LEAST_S.max(2.0 * renewal_s);
+        let matters = case.wanted(id) && late_s > LEAST_S.max(2.0 * renewal_s);
         matters.then_some(Late { channels, by, sd })
     };
     powers.into_iter().filter_map(of).collect()
@@ -184,18 +184,16 @@ struct Left {
 impl Left {
     /// With ways by which a sample was made so many steps before it was recorded.
     fn with(
-        pairs: &[Pair],
+        followed: &[(f64, Vec<Vec<f64>>)],
         measured: &[Vec<f64>],
         (count, margin): (usize, usize),
         before: impl Fn(usize, usize) -> usize,
     ) -> Self {
         let mut left = Self { squares: vec![f64::INFINITY; count], following_s: vec![0.0; count] };
-        for constant_s in FOLLOWING_S {
-            let following: Vec<Vec<f64>> =
-                pairs.iter().map(|pair| band(&follow(&pair.modelled, constant_s))).collect();
+        for (constant_s, following) in followed {
             for way in 0..count {
                 let (mut square, mut cross, mut own) = (0.0, 0.0, 0.0);
-                for (measured, modelled) in measured.iter().zip(&following) {
+                for (measured, modelled) in measured.iter().zip(following) {
                     // The same samples of what was measured for every way.
                     for index in margin..measured.len().saturating_sub(margin) {
                         let (value, model) = (measured[index], modelled[before(way, index)]);
@@ -206,7 +204,7 @@ impl Left {
                 }
                 let explained = if own > 0.0 && cross > 0.0 { cross * cross / own } else { 0.0 };
                 if square - explained < left.squares[way] {
-                    (left.squares[way], left.following_s[way]) = (square - explained, constant_s);
+                    (left.squares[way], left.following_s[way]) = (square - explained, *constant_s);
                 }
             }
         }
@@ -234,10 +232,11 @@ fn drifted(index: usize, rate: f64) -> usize {
     (index as f64 * (1.0 - rate)).round() as usize
 }
 
-/// What suits all runs best, a delay or a clock that runs apart, and its standard deviation; none where neither is needed.
+/// What suits all runs best, a delay or, where there are `clocks`, one that runs apart, and its standard deviation; none where
+/// neither is needed.
 // Steps of grids.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
-fn told(pairs: &[Pair]) -> Option<(By, f64)> {
+fn told(pairs: &[Pair], clocks: bool) -> Option<(By, f64)> {
     /// A clock that runs apart is in these steps late by a tenth of a second more or less at the end of the longest run.
     const RATES_EACH_WAY: usize = 40;
     /// Growth of ln p from which on it is the clock: a bus that is late is the commoner fault.
@@ -256,24 +255,32 @@ fn told(pairs: &[Pair]) -> Option<(By, f64)> {
     }
     let longest = measured.iter().map(Vec::len).max().unwrap_or(0) as f64;
     let gain = |before: f64, after: f64| 0.5 * independent * (before / after).ln();
-    let delays = Left::with(pairs, &measured, (steps + 1, steps), |delay, index| index - delay);
+    let with = |constant_s: f64| {
+        let following = pairs.iter().map(|pair| band(&follow(&pair.modelled, constant_s)));
+        (constant_s, following.collect::<Vec<_>>())
+    };
+    let followed = FOLLOWING_S.map(with);
+    let delays = Left::with(&followed, &measured, (steps + 1, steps), |delay, index| index - delay);
     let (delay, delay_off) = delays.best(independent)?;
-    // Late by so many steps in a step.
-    let rate_of = |way: f64| (way - RATES_EACH_WAY as f64) * steps as f64 / (RATES_EACH_WAY as f64 * longest);
-    let drifts = Left::with(pairs, &measured, (2 * RATES_EACH_WAY + 1, steps), |way, index| {
-        drifted(index, rate_of(way as f64))
-    });
-    let (drift, drift_off) = drifts.best(independent)?;
     let told = |left: &Left, best: usize, ends: &[usize]| {
         gain(delays.squares[0], left.squares[best]) >= LEAST_GAIN
             && left.squares[best] <= (1.0 - EXPLAINED) * whole
             && !ends.contains(&best)
     };
-    if gain(delays.squares[delay], drifts.squares[drift]) > CLEARLY
-        && told(&drifts, drift, &[0, 2 * RATES_EACH_WAY])
-    {
-        let step = rate_of(drift as f64 + 1.0) - rate_of(drift as f64);
-        return Some((By::Drift(rate_of(drifts.place(drift))), drift_off as f64 * step / 2.0));
+    if clocks {
+        // Late by so many steps in a step.
+        let rate_of =
+            |way: f64| (way - RATES_EACH_WAY as f64) * steps as f64 / (RATES_EACH_WAY as f64 * longest);
+        let drifts = Left::with(&followed, &measured, (2 * RATES_EACH_WAY + 1, steps), |way, index| {
+            drifted(index, rate_of(way as f64))
+        });
+        let (drift, drift_off) = drifts.best(independent)?;
+        if gain(delays.squares[delay], drifts.squares[drift]) > CLEARLY
+            && told(&drifts, drift, &[0, 2 * RATES_EACH_WAY])
+        {
+            let step = rate_of(drift as f64 + 1.0) - rate_of(drift as f64);
+            return Some((By::Drift(rate_of(drifts.place(drift))), drift_off as f64 * step / 2.0));
+        }
     }
     if !told(&delays, delay, &[steps]) {
         return None;
@@ -350,7 +357,7 @@ mod tests {
 
     #[test]
     fn a_delay_is_found_and_a_power_that_follows_is_none() {
-        let delay_s = |pairs: &[Pair]| match told(pairs).unwrap() {
+        let delay_s = |pairs: &[Pair]| match told(pairs, true).unwrap() {
             (By::Delay(delay_s), sd) => (delay_s, sd),
             other => panic!("{other:?}"),
         };
@@ -358,12 +365,12 @@ mod tests {
         assert!((found_s - 1.2).abs() <= 0.5 * STEP_S && sd < 0.2, "{found_s} ± {sd}");
         let (found_s, _) = delay_s(&pairs(24, 1.0, 3.0));
         assert!((found_s - 2.2).abs() <= 4.0 * STEP_S, "{found_s}");
-        assert_eq!(told(&pairs(0, 0.0, 3.0)), None);
+        assert_eq!(told(&pairs(0, 0.0, 3.0), true), None);
         // The least of (x − 1.3)² between points of a grid; at an end there is none beside it.
         let values: Vec<f64> = (0..4).map(|x| (f64::from(x) - 1.3).powi(2)).collect();
         assert!((between(&values, 1) - 0.3).abs() < 1e-12);
         assert_eq!(between(&values, 0), 0.0);
-        assert_eq!(told(&pairs(0, 2.0, 3.0)), None);
+        assert_eq!(told(&pairs(0, 2.0, 3.0), true), None);
     }
 
     /// Late by a hundredth of the time since the begin, or early: 1.2 s at the end of two minutes.
@@ -376,7 +383,7 @@ mod tests {
                 let own = (0..=last).map(|index| pair.measured[drifted(index, rate).min(last)]).collect();
                 pair.measured = own;
             }
-            let Some((By::Drift(found), sd)) = told(&all) else { panic!("no drift at {rate}") };
+            let Some((By::Drift(found), sd)) = told(&all, true) else { panic!("no drift at {rate}") };
             assert!((found - rate).abs() < 2.0 * sd && sd < 1e-3, "{found} ± {sd} for {rate}");
             assert!((By::Drift(found).recorded_s(100.0, 0.0) - 100.0 / (1.0 - found)).abs() < 1e-9);
         }

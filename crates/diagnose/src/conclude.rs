@@ -233,6 +233,7 @@ impl State<'_> {
         }
         self.named_in_neutral(&best, &mut accepted);
         self.named_level(&best, &mut accepted);
+        self.named_patch(&best, &mut accepted);
         Found {
             tried,
             unproven,

@@ -87,8 +87,13 @@ impl Sought {
         if self.target == Target::Share {
             all.retain(|variable| OF_A_DRIVE.contains(&variable.name.as_str()));
         }
-        if self.target == Target::Share && self.kind == Kind::Shaft {
-            let runs = case.runs.iter().zip(&case.nominal).map(|(run, said)| drive_n(run, said)).collect();
+        // Of the motion a law may know the force that was measured alone: the one that it asks for is made of it.
+        let drive = |(run, said): (&Recorded, &Said)| match self.kind {
+            Kind::Motion => known_drive_n(run),
+            _ => drive_n(run, said),
+        };
+        if self.target == Target::Share && [Kind::Shaft, Kind::Motion].contains(&self.kind) {
+            let runs = case.runs.iter().zip(&case.nominal).map(drive).collect();
             all.push(Variable { name: "F_drive".to_owned(), unit: "N".to_owned(), runs, finest: 0.0 });
         }
         all
@@ -107,6 +112,15 @@ fn drive_n(run: &Recorded, said: &Said) -> Vec<f64> {
         if free { 0.0 } else { moved_n + said.resistance_n[index] }
     };
     (0..run.acceleration_m_s2.len()).map(asked_n).collect()
+}
+
+/// The force of the drive as far as it is known, sample by sample, and none elsewhere [N].
+fn known_drive_n(run: &Recorded) -> Vec<f64> {
+    let known = |force_n: &f64| if force_n.is_finite() { *force_n } else { 0.0 };
+    match &run.force_n {
+        Some(force_n) => force_n.iter().map(known).collect(),
+        None => vec![0.0; run.acceleration_m_s2.len()],
+    }
 }
 
 /// What the force of the drive takes, sample by sample [W].

@@ -90,6 +90,7 @@ mod together;
 mod trial;
 mod unlisted;
 mod unmoved;
+mod unsourced;
 mod voltage;
 mod way;
 mod widths;
@@ -153,6 +154,7 @@ fn diagnose_once(
     for late in late_power::late(&case) {
         faults.push(late_power::set_right(&mut case, late, &mut sound)?);
     }
+    unsourced::leave_out(&mut case)?;
     case.sound.clone_from(&sound);
     let against = contradiction::statements(&case, &sound);
     if !against.is_empty() {

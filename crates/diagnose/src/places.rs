@@ -68,6 +68,29 @@ fn as_loaded(there: &[Loaded], own: Loaded) -> bool {
     there.len() >= FEWEST && (own.0 - said_n).abs() < ALIKE * said_n.abs()
 }
 
+/// Whether what is on between two times, in one run or in all of them, may as well be what the ground does: it is on in one and the
+/// same place, and nobody comes across that at another time. Nothing says so where no place was recorded.
+pub fn in_one_place(case: &Case, run: Option<usize>, [from_s, to_s]: [f64; 2]) -> bool {
+    let is_on = |own: &&Recorded| run.is_none_or(|run| own.number == run);
+    let on: Vec<(&Recorded, Place)> =
+        case.runs.iter().filter(is_on).filter_map(|run| Some((run, stretch(run, from_s, to_s)?))).collect();
+    let [(first, there), others @ ..] = &on[..] else { return false };
+    let mostly = |place: Place| overlap(*there, place) > 0.5 * (there.1 - there.0);
+    let off = |own: &Recorded| match is_on(&own) {
+        true => vec![(f64::NEG_INFINITY, from_s), (to_s, f64::INFINITY)],
+        false => vec![(f64::NEG_INFINITY, f64::INFINITY)],
+    };
+    let at_another_time = |own: &Recorded| {
+        off(own).into_iter().filter_map(|(from_s, to_s)| stretch(own, from_s, to_s)).any(mostly)
+    };
+    first.measured.trace.get("position_m").is_some()
+        && others.iter().all(|(run, place)| run.path == first.path && mostly(*place))
+        && !case.runs.iter().any(|run| run.path == first.path && at_another_time(run))
+}
+
+/// From where to where [m].
+type Place = (f64, f64);
+
 /// Where a run was between two times [m].
 pub fn stretch(run: &Recorded, from_s: f64, to_s: f64) -> Option<(f64, f64)> {
     let times = run.measured.trace.time_s().iter().zip(&run.position_m);

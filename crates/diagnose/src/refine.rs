@@ -5,6 +5,7 @@ use crate::events::{Event, LEAST_GAIN, named};
 use crate::gram::Column;
 use crate::losses::SMALL_LOSS;
 use crate::mirror::{self, Lane, is_whole};
+use crate::places::in_one_place;
 use crate::profile::Function;
 use crate::recorded::Recorded;
 use crate::regeneration::limit_w;
@@ -349,6 +350,11 @@ pub fn spells(case: &Case, system: &System, events: &[Event], refined: &mut Refi
         if limit.is_none() && id == "braking" && is_gentle(case, &cured.events) {
             cured.accepted.rivals.extend(pull_instead(case, &cured.accepted));
         }
+        if let ("drawbar_load", [event]) = (id, &cured.events[..])
+            && in_one_place(case, Some(event.run), [event.from_s, event.to_s])
+        {
+            cured.accepted.rivals.extend(patch_instead(case, &cured.accepted));
+        }
         let values = limit.map(|(value, sd)| (value, [value - HALF_95 * sd, value + HALF_95 * sd]));
         refined.causes.push(match values {
             Some(value) => Cured { values: vec![value], ..cured },
@@ -384,6 +390,12 @@ fn pull_instead(case: &Case, brakes: &Accepted) -> Option<Rival> {
     let pull = |cause: &Cause| cause.id == "drawbar_load" && cause.window().is_none() && cause.run.is_none();
     let cause = case.causes.iter().position(pull)?;
     Some(Rival { cause, gain: brakes.gain, squared_correlation: 1.0, free: Vec::new() })
+}
+
+/// Softer ground in the place of a pull, which says as much.
+fn patch_instead(case: &Case, pull: &Accepted) -> Option<Rival> {
+    let cause = case.causes.iter().position(Cause::is_patch)?;
+    Some(Rival { cause, gain: pull.gain, squared_correlation: 1.0, free: Vec::new() })
 }
 
 /// Spells of one name as a cause.

@@ -4,6 +4,7 @@ use crate::balance::Kind;
 use crate::catalogue::{Cause, Form};
 use crate::conclude::Side;
 use crate::gram::Column;
+use crate::places::in_one_place;
 use crate::search::{Accepted, Beside, Found, OTHER_WORDS, Rival, TOLERANCE, worth};
 use crate::state::{Stand, State};
 use crate::trial::Trial;
@@ -17,6 +18,9 @@ pub const TOLERANCE_IN_DOUBT: f64 = 5.0;
 
 /// A map of the ground that is the same everywhere.
 const LEVEL: &str = "rolling_resistance";
+
+/// What pulls for a while.
+const PULL: &str = "drawbar_load";
 
 /// The other name of a function of the path, where it has one: driven one way alone, slopes and softer ground are the same.
 pub fn twin(id: &str) -> Option<&'static str> {
@@ -116,6 +120,24 @@ impl State<'_> {
                     squared_correlation: middle * middle / square,
                     free: self.free_beside(best),
                 });
+            }
+        }
+    }
+
+    /// Names a map of the ground beside a pull that sets in and ends, where it may as well be one patch of it: a map is dear, since
+    /// it may take any course, and what a window costs less for says nothing of which of the two was there.
+    pub fn named_patch(&self, best: &Stand, accepted: &mut [Accepted]) {
+        let Some(cause) = self.case.causes.iter().position(Cause::is_patch) else { return };
+        let named = |one: &Accepted| self.case.causes[one.trial.cause].form == Form::OverPosition;
+        if accepted.iter().any(named) {
+            return;
+        }
+        for one in accepted.iter_mut() {
+            let own = self.cause(&one.trial);
+            let Some(window) = own.window_s(&one.trial.shape).filter(|_| own.id == PULL) else { continue };
+            if in_one_place(self.case, None, window) && !one.rivals.iter().any(|rival| rival.cause == cause) {
+                let free = self.free_beside(best);
+                one.rivals.push(Rival { cause, gain: one.gain, squared_correlation: 1.0, free });
             }
         }
     }

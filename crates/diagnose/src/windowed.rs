@@ -18,10 +18,9 @@ pub fn in_window(
     (term, step): (usize, f64),
     shape: &[f64],
 ) -> Result<Option<Column>, DiagnoseError> {
-    let (None, Some((from, to))) = (&cause.own, cause.window()) else { return Ok(None) };
-    let held: Vec<usize> = (0..cause.terms.len()).filter(|place| !cause.terms[*place].linear).collect();
-    let ([first, second], [one, other]) = (held.as_slice(), shape) else { return Ok(None) };
-    let (from_s, to_s) = if (*first, *second) == (from, to) { (*one, *other) } else { (*other, *one) };
+    let (None, [_, _], Some([from_s, to_s])) = (&cause.own, shape, cause.window_s(shape)) else {
+        return Ok(None);
+    };
     let text = cause.written(&throughout(cause, term, step));
     let mut throughout = shown(case, system, cause, step, &|_| text.clone())?;
     for samples in throughout.iter_mut().map(|(_, samples)| samples) {

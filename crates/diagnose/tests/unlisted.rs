@@ -150,6 +150,33 @@ fn a_loss_that_goes_with_drive_and_speed_is_found_as_a_share_of_the_drive() {
     }
 }
 
+/// A loss with the square of the force is no loss in proportion to it, which would be the listed one.
+#[test]
+fn a_loss_that_goes_with_the_square_of_the_force_is_found_as_a_share_of_it() {
+    const PER_N: f64 = 4e-6;
+    let hidden =
+        format!(r#"expression(loss_share: "abs(F_drive) / f_n", constants: {{"f_n": {:?}}})"#, 1.0 / PER_N);
+    let recording = recorded(0.069, &hidden);
+    let found = found(&recording, &Options::default()).unwrap();
+    let [law] = &found.diagnosis.findings[..] else { panic!("{}", found.diagnosis.answer) };
+    assert_eq!(law.kind, FindingKind::Unlisted, "{}", found.diagnosis.answer);
+    assert_eq!(law.depends_on, ["tractive_force_n"], "{:?}", law.equation);
+    let registry = headland_stock::registry();
+    let improved = Scenario::of_text("improved.ron", &found.scenarios[0], Path::new(""), &registry).unwrap();
+    let model = improved.run(&improved.runs[0], &registry).unwrap().model(&registry).unwrap();
+    for force_n in [6e3, 12e3, -12e3, 17e3] {
+        let situation = Situation { tractive_force_n: force_n, speed_m_s: 5.0, ..Situation::default() };
+        let share: f64 =
+            model.effects.iter().map(|one| one.plugin.act(&situation, &[], &mut []).loss_share).sum();
+        let truth = PER_N * force_n.abs();
+        assert!(
+            (share - truth).abs() < 0.1 * truth,
+            "{share} instead of {truth} at {force_n} N: {:?}",
+            law.equation
+        );
+    }
+}
+
 /// What holds back on slopes, up and down alike, is a law of the slope that the scenario knows.
 #[test]
 fn a_drag_on_known_slopes_is_found_as_an_equation() {

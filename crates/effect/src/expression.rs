@@ -27,6 +27,7 @@ use dimension::Dimension;
 use fault::Fault;
 use headland_plugin::{Action, Card, Effect, Plugin, Refusal, Situation, parameter};
 use headland_units::parse_unit;
+use names::DRIVE;
 use parser::compile;
 use program::Program;
 use serde::Deserialize;
@@ -52,6 +53,8 @@ pub struct Expression {
     #[serde(skip)]
     follows: bool,
     #[serde(skip)]
+    follows_drive: bool,
+    #[serde(skip)]
     resistance_n: Option<Program>,
     #[serde(skip)]
     force_n: Option<Program>,
@@ -63,6 +66,9 @@ pub struct Expression {
     shaft_power_w: Option<Program>,
 }
 
+/// What is lost of the force of the drive.
+const LOSS: &str = "loss_share";
+
 impl Plugin for Expression {
     const CARD: Card = Card {
         name: "expression",
@@ -73,7 +79,7 @@ impl Plugin for Expression {
                    constants",
         source: "the author of the scenario; empirical",
         validity: "units have to fit; comparisons are 1 or 0; slope is the sine, N = m g cos θ the normal load, the cross \
-                   wind comes from the right; oil_temperature has to be recorded; powers alone may name the acceleration, F_drive, the force at the wheels, and engine_speed, which forces make; a force that is not finite stops the simulation, \
+                   wind comes from the right; oil_temperature has to be recorded; powers alone may name the acceleration and engine_speed, which forces make, powers and loss_share F_drive, the force of the drive before that loss; a force that is not finite stops the simulation, \
                    such a power leaves the drive without any",
         parameters: &[
             parameter(
@@ -107,7 +113,7 @@ impl Plugin for Expression {
         let formulas = [
             ("resistance", &self.resistance, "N", &mut self.resistance_n),
             ("force", &self.force, "N", &mut self.force_n),
-            ("loss_share", &self.loss_share, "1", &mut self.loss),
+            (LOSS, &self.loss_share, "1", &mut self.loss),
             ("auxiliary_power", &self.auxiliary_power, "W", &mut self.auxiliary_power_w),
             ("shaft_power", &self.shaft_power, "W", &mut self.shaft_power_w),
         ];
@@ -121,13 +127,18 @@ impl Plugin for Expression {
                 let found = format!("\"{}\" in {}", Fault::quote(text, 0..text.len()), compiled.dimension);
                 return Err(refuse(name, &found, &format!("a formula in {unit}")));
             }
-            if let Some(named) = compiled.made {
-                if unit != "W" {
-                    let found = format!("`{}` in what makes it", Fault::quote(text, named));
-                    return Err(refuse(name, &found, "a formula of what makes it; powers may name it"));
-                }
-                self.follows = true;
+            self.follows_drive |=
+                name == LOSS && compiled.made.iter().any(|span| text[span.clone()] == *DRIVE);
+            // What is lost of the force of the drive is known as soon as that force is.
+            let mut unknown = compiled
+                .made
+                .iter()
+                .filter(|span| unit != "W" && !(name == LOSS && text[(*span).clone()] == *DRIVE));
+            if let Some(named) = unknown.next() {
+                let found = format!("`{}` in what makes it", Fault::quote(text, named.clone()));
+                return Err(refuse(name, &found, "a formula of what makes it; powers may name it"));
             }
+            self.follows |= !compiled.made.is_empty();
             for (used, uses) in used.iter_mut().zip(compiled.uses) {
                 *used |= uses;
             }
@@ -156,6 +167,10 @@ fn share(value: f64) -> f64 {
 impl Effect for Expression {
     fn follows_acceleration(&self) -> bool {
         self.follows
+    }
+
+    fn follows_drive(&self) -> bool {
+        self.follows_drive
     }
 
     fn act(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Action {

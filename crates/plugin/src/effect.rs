@@ -54,12 +54,18 @@ pub trait Effect: Debug + Send + Sync {
     /// What it does at this instant, and how its states change (`rates`, one for each state, per second).
     ///
     /// Where some effect adds mass or drag area, all are asked again with the sums in `at`; so mass and drag area that
-    /// an effect adds must not depend on them. The force at the wheels is not known yet.
+    /// an effect adds must not depend on them. The force at the wheels is not known yet, but to an effect that follows it.
     fn act(&self, at: &Situation, states: &[f64], rates: &mut [f64]) -> Action;
 
     /// Whether its powers hang on `at.acceleration_m_s2`: it is asked once more then, when forces have made it. Its forces
     /// must not hang on it.
     fn follows_acceleration(&self) -> bool {
+        false
+    }
+
+    /// Whether what it takes of the force of the drive hangs on that force, `at.tractive_force_n`: it is asked again and again then,
+    /// until the two agree.
+    fn follows_drive(&self) -> bool {
         false
     }
 

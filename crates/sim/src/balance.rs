@@ -68,6 +68,23 @@ struct Made {
     engine_speed_rad_s: Option<f64>,
 }
 
+impl Made {
+    #[inline(always)]
+    fn of(instant: &Instant) -> Self {
+        let speed_rad_s = instant.delivery.readings.engine_speed_rad_s;
+        Self {
+            acceleration_m_s2: instant.acceleration_m_s2,
+            tractive_force_n: instant.delivery.force_n,
+            engine_speed_rad_s: speed_rad_s.is_finite().then_some(speed_rad_s),
+        }
+    }
+}
+
+/// A loss that hangs on the force of the drive, and the force that it asks of the drive, agree within this share of it; each round
+/// brings them closer by about the share that is lost.
+const AGREED: f64 = 1e-9;
+const MOST_ROUNDS: usize = 20;
+
 /// Everything that is known at one instant.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Instant {
@@ -258,26 +275,17 @@ impl Model {
     ) -> Instant {
         let at = (point, command, given);
         let follows = self.effects.iter().any(|effect| effect.plugin.follows_acceleration());
-        let made = if follows {
-            let first = self.balance_at::<false, WHOLE>(
-                at,
-                Made::default(),
-                layout,
-                slots,
-                states,
-                rates,
-                powers,
-                scratch,
-            );
-            let speed_rad_s = first.delivery.readings.engine_speed_rad_s;
-            Made {
-                acceleration_m_s2: first.acceleration_m_s2,
-                tractive_force_n: first.delivery.force_n,
-                engine_speed_rad_s: speed_rad_s.is_finite().then_some(speed_rad_s),
+        let by_drive = self.effects.iter().any(|effect| effect.plugin.follows_drive());
+        let mut made = Made::default();
+        for _ in 0..if by_drive { MOST_ROUNDS } else { usize::from(follows) } {
+            let before_n = made.tractive_force_n;
+            let first =
+                self.balance_at::<false, WHOLE>(at, made, layout, slots, states, rates, powers, scratch);
+            made = Made::of(&first);
+            if (made.tractive_force_n - before_n).abs() <= AGREED * before_n.abs() {
+                break;
             }
-        } else {
-            Made::default()
-        };
+        }
         self.balance_at::<DECIDES, WHOLE>(at, made, layout, slots, states, rates, powers, scratch)
     }
 

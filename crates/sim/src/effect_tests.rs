@@ -39,6 +39,22 @@ impl Effect for Weighs {
     }
 }
 
+/// Takes a share of the force of the drive in proportion to it.
+#[derive(Debug)]
+struct Chafes {
+    per_n: f64,
+}
+
+impl Effect for Chafes {
+    fn act(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Action {
+        Action { loss_share: self.per_n * at.tractive_force_n.abs(), ..Action::default() }
+    }
+
+    fn follows_drive(&self) -> bool {
+        true
+    }
+}
+
 #[derive(Debug)]
 struct Level;
 
@@ -155,6 +171,28 @@ fn a_share_that_is_lost_is_asked_for_and_booked() {
     assert!((last(&outcome, "tractive_force_n") - 200.0 / 0.9).abs() < 1e-9);
     assert!((last(&outcome, "effect_0_n") + 20.0 / 0.9).abs() < 1e-9);
     assert!((last(&outcome, "speed_m_s") - 10.0).abs() < 1e-12);
+}
+
+/// 200 N at the ground with k F² lost, k = 1/2000 N: F = (1 − √(1 − 4 · 200 k)) / 2k = 225.4 N, and 25.4 N are the effect's. A
+/// recorded force of as much holds the speed.
+#[test]
+fn a_share_that_hangs_on_the_force_is_asked_for_until_both_agree() {
+    let chafing = || model(vec![Box::new(Chafes { per_n: 5e-4 })]);
+    let outcome = hold(&chafing());
+    let expected_n = (1.0 - (1.0f64 - 0.4).sqrt()) / 1e-3;
+    assert!((last(&outcome, "tractive_force_n") - expected_n).abs() < 1e-6);
+    assert!((last(&outcome, "effect_0_n") + expected_n - 200.0).abs() < 1e-6);
+    assert!(outcome.ledger.relative_residual() < 1e-9, "{:?}", outcome.ledger);
+    let how = Replay {
+        drive: Drive::Force,
+        also: Vec::new(),
+        window_s: None,
+        smoothing_s: 0.05,
+        step_s: 0.01,
+        reversed_from_m: None,
+    };
+    let replayed = replay(&chafing(), &outcome.trace, &how).unwrap();
+    assert!((last(&replayed, "speed_m_s") - 10.0).abs() < 1e-6);
 }
 
 /// A slip of 200 · 0.0005 = 0.1: the wheels roll at 10 / 0.9 m/s, and 200 · 1.111 = 222.2 W are the effect's.

@@ -2,7 +2,7 @@
 //!
 //! Each divides its variable by a scale of the same unit, so that its value is a pure number whatever the variable is.
 
-use crate::variable::{Checked, Kind};
+use crate::variable::{Checked, DRIVE, Kind};
 use std::f64::consts::TAU;
 
 /// A function of a variable u with a scale s and a centre c.
@@ -108,12 +108,15 @@ pub(crate) struct Factor {
 /// Whether the formula takes the absolute value: where a root of a negative number would stand, or where a law of size
 /// meets values of both signs.
 fn takes_size(shape: Shape, of: &Checked) -> bool {
-    let both = of.negative && of.known.kind != Kind::Level;
+    // A drive loses both ways, whether or not it was seen to hold back.
+    let lost = of.known.name == DRIVE;
+    let both = of.negative && of.known.kind != Kind::Level || lost;
     match shape {
         Shape::Power(p) => p.fract() != 0.0 || (both && p.rem_euclid(2.0) == 1.0),
         Shape::FreePower(_) => true,
-        Shape::Saturation | Shape::Hyperbola => of.negative,
+        Shape::Saturation | Shape::Hyperbola => of.negative || lost,
         Shape::Decay | Shape::Rise => both,
+        Shape::Tanh => lost && !of.negative,
         _ => false,
     }
 }

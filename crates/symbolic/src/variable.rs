@@ -65,7 +65,7 @@ pub(crate) const ACCELERATION: &str = "acceleration";
 const ENGINE_SPEED: &str = "engine_speed";
 
 /// The force at the wheels: by itself what a law of a force would have to say.
-const DRIVE: &str = "F_drive";
+pub(crate) const DRIVE: &str = "F_drive";
 
 /// Everything that may stand in a law.
 pub(crate) const KNOWN: [Known; 21] = [

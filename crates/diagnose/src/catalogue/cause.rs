@@ -126,6 +126,19 @@ impl Cause {
         self.places("from_s", "to_s")
     }
 
+    /// Whether it is a map of how softly the ground bears.
+    pub fn is_patch(&self) -> bool {
+        self.form == Form::OverPosition && self.even().is_some_and(|(id, _)| id == "rolling_resistance")
+    }
+
+    /// When it sets in and ends, by its shape [s].
+    pub fn window_s(&self, shape: &[f64]) -> Option<[f64; 2]> {
+        let (from, to) = self.window()?;
+        let held: Vec<usize> = (0..self.terms.len()).filter(|place| !self.terms[*place].linear).collect();
+        let of = |place: usize| shape.get(held.iter().position(|held| *held == place)?).copied();
+        Some([of(from)?, of(to)?])
+    }
+
     /// How many numbers are estimated where it is no function: sizes and shapes, or those of its formula.
     pub fn numbers(&self) -> usize {
         let of_law = |law: &LawText| law.constants.iter().filter(|constant| constant.sd.is_some()).count();

@@ -64,9 +64,8 @@ impl LawText {
             constants: law.constants.clone(),
             depends_on: CHANNELS
                 .into_iter()
-                .filter(|(name, _)| law.names(name))
+                .filter(|(name, _)| law.names(name) || target == Target::Share && *name == "F_drive")
                 .map(|(_, channel)| channel)
-                .chain((target == Target::Share).then_some("tractive_force_n"))
                 .collect(),
             terms: law.terms,
             cost: PER_PIECE * law.complexity as f64,

@@ -1,6 +1,8 @@
 //! Runs that lack a channel, and balances from channels that are not powers or forces themselves.
 
-use super::setting::{found, found_with, named, recording_of};
+use super::setting::{
+    found, found_of_scenario, found_with, named, recording_of, recording_of_scenario, scenario,
+};
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{Diagnosed, Options};
 use headland_recording::{Recording, Sensor};
@@ -240,6 +242,45 @@ fn a_consumer_that_is_on_for_a_while_in_each_run_is_told_as_that() {
     let found = found(&recorded(hidden, &channels, noisy), &Options::default()).unwrap();
     let ids: Vec<&str> = found.diagnosis.findings.iter().map(|finding| finding.id.as_str()).collect();
     assert_eq!(ids, ["auxiliary_power"], "{}", found.diagnosis.answer);
+}
+
+/// For some seconds of one run the battery gives a third of what the motor takes: nothing that consumes does that, and what it does
+/// everywhere else is told as if those seconds had not been logged.
+#[test]
+fn where_a_battery_gives_less_than_the_motor_takes_it_tells_of_no_consumer() {
+    const POWER_W: f64 = 6000.0;
+    let hidden = format!("auxiliary_power(power_w: {POWER_W:?})");
+    let longer = |effects: &str| {
+        let text = scenario(0.069, effects, "");
+        text.replace("Hold(for_s: 6)", "Hold(for_s: 80)")
+    };
+    let channels = ["speed_m_s", "position_m", "motor_torque_n_m", "battery_voltage_v", "battery_current_a"];
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.01 * draws.normal(),
+        "motor_torque_n_m" => value + 0.3 * draws.normal(),
+        "battery_current_a" => value + 0.5 * draws.normal(),
+        _ => value,
+    };
+    let registry = headland_stock::registry();
+    let mut recording = recording_of_scenario(&longer(&hidden), &registry, &channels, (37, &noisy));
+    let broken = &mut recording.runs[1].trace;
+    let mut current = broken.remove("battery_current_a").unwrap();
+    for (current_a, time_s) in current.values.iter_mut().zip(broken.time_s()) {
+        if (60.0..66.0).contains(time_s) {
+            *current_a /= 3.0;
+        }
+    }
+    broken.push("battery_current_a", current.values, Origin::Measured).unwrap();
+    let found = found_of_scenario(&longer(""), &recording, &Options::default(), &registry).unwrap();
+    assert!(
+        noted(&found, "The battery gives less than the drive takes from it in r1 from "),
+        "{:?}",
+        found.diagnosis.notes
+    );
+    let [consumer] = &found.diagnosis.findings[..] else { panic!("{}", found.diagnosis.answer) };
+    assert_eq!(consumer.id, "auxiliary_power", "{}", found.diagnosis.answer);
+    let power = consumer.parameters.iter().find(|one| one.name == "power_w").unwrap();
+    assert!((power.value - POWER_W).abs() < 0.02 * POWER_W, "{power:?}");
 }
 
 /// What is found of a slope with an accelerometer that reads so much too much.

@@ -1,8 +1,8 @@
 //! What is of the ground, and what only looks like it or is taken for something else.
 
-use super::setting::{ELECTRIC, found_of_scenario, named, recording_of_scenario};
+use super::setting::{ELECTRIC, found_of_scenario, named, recording_of_scenario, scenario};
 use headland_calibrate::statistics::Draws;
-use headland_diagnose::{Diagnosed, Options};
+use headland_diagnose::{Diagnosed, Options, Verdict};
 
 /// A tractor in neutral on one lane, from eight speeds, with `effects`.
 fn coasts(effects: &str) -> String {
@@ -82,6 +82,30 @@ fn ground_that_firms_to_next_to_nothing_is_no_level_of_each_run() {
     assert_eq!(pass.id, "multipass", "{}", said.answer);
     let factor = pass.parameters.iter().find(|one| one.name == "factor").unwrap();
     assert!((factor.value - FACTOR).abs() < 0.05, "{factor:?}");
+}
+
+/// One run alone comes across a patch: that the ground was soft there, and that something was let down for as long, say the same.
+#[test]
+fn what_holds_one_run_back_in_one_place_is_in_doubt() {
+    let text = |effects: &str| {
+        let text = scenario(0.069, effects, "start: (position_m: 0, speed_m_s: 1.0),");
+        let elsewhere = |text: String, run: u32| {
+            let with = |more: &str| format!("(id: \"r{run}\", with: {{{more}");
+            text.replace(&with(""), &with("\"start.position_m\": 300.0, "))
+        };
+        (1..5).fold(text, elsewhere)
+    };
+    let registry = headland_stock::registry();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| {
+        if name == "speed_m_s" { value + 0.02 * draws.normal() } else { value }
+    };
+    let hidden = text("soft_ground(positions_m: [50, 90], coefficients: [0.04])");
+    let channels = ["speed_m_s", "position_m", "tractive_force_n", "coasting"];
+    let recording = recording_of_scenario(&hidden, &registry, &channels, (41, &noisy));
+    let found = found_of_scenario(&text(""), &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    assert_eq!(said.verdict, Verdict::CannotTell, "{}", said.answer);
+    assert!(named(&found, "soft_ground"), "{}", said.answer);
 }
 
 /// What the speed is held by follows the ground, and moves nothing: a mass would be as large as it may be.

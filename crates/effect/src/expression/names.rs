@@ -19,7 +19,8 @@ const fn variable(name: &'static str, unit: &'static str, of: fn(&Situation) -> 
 /// which are not known before them.
 pub(super) const MADE: [&str; 3] = [ACCELERATION, DRIVE, ENGINE];
 const ACCELERATION: &str = "acceleration";
-const DRIVE: &str = "F_drive";
+/// The force of the drive, which what is lost of it may name as well.
+pub(super) const DRIVE: &str = "F_drive";
 const ENGINE: &str = "engine_speed";
 
 /// Every variable; NaN where it is not known. Signs are those of [`Situation`]; the cross wind counts from the right.

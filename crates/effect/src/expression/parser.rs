@@ -37,15 +37,15 @@ pub(super) struct Compiled {
     /// A lone 0, which has every unit.
     pub any_unit: bool,
     pub uses: Vec<bool>,
-    /// Where it names what forces make, if it does.
-    pub made: Option<Range<usize>>,
+    /// Where it names what forces make.
+    pub made: Vec<Range<usize>>,
 }
 
 /// Compiles a text.
 pub(super) fn compile(text: &str, constants: &[Constant]) -> Result<Compiled, Fault> {
     let uses = vec![false; constants.len()];
     let (token, program) = (next(text, 0), Program::default());
-    let mut parser = Parser { text, constants, token, end: 0, program, uses, made: None, depth: 0 };
+    let mut parser = Parser { text, constants, token, end: 0, program, uses, made: Vec::new(), depth: 0 };
     let whole = parser.comparison()?;
     if parser.token.kind != Kind::End {
         return Err(parser.unexpected("an operator or the end"));
@@ -63,7 +63,7 @@ struct Parser<'a> {
     end: usize,
     program: Program,
     uses: Vec<bool>,
-    made: Option<Range<usize>>,
+    made: Vec<Range<usize>>,
     depth: usize,
 }
 
@@ -207,7 +207,7 @@ impl<'a> Parser<'a> {
             return Err(Fault::unknown(self.text, span, self.constants));
         };
         if MADE.contains(&variable.name) {
-            self.made.get_or_insert(span.clone());
+            self.made.push(span.clone());
         }
         self.emit(Step::Load(variable.of), span.clone())?;
         Ok(operand(parse_unit(variable.unit).map_or(Dimension::NONE, |unit| Dimension::of(&unit))))

@@ -76,10 +76,8 @@ pub fn in_one_place(case: &Case, run: Option<usize>, [from_s, to_s]: [f64; 2]) -
         case.runs.iter().filter(is_on).filter_map(|run| Some((run, stretch(run, from_s, to_s)?))).collect();
     let [(first, there), others @ ..] = &on[..] else { return false };
     let mostly = |place: Place| overlap(*there, place) > 0.5 * (there.1 - there.0);
-    let off = |own: &Recorded| match is_on(&own) {
-        true => vec![(f64::NEG_INFINITY, from_s), (to_s, f64::INFINITY)],
-        false => vec![(f64::NEG_INFINITY, f64::INFINITY)],
-    };
+    let ever = (f64::NEG_INFINITY, f64::INFINITY);
+    let off = |own: &Recorded| if is_on(&own) { vec![(ever.0, from_s), (to_s, ever.1)] } else { vec![ever] };
     let at_another_time = |own: &Recorded| {
         off(own).into_iter().filter_map(|(from_s, to_s)| stretch(own, from_s, to_s)).any(mostly)
     };

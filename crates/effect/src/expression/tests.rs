@@ -245,7 +245,7 @@ fn a_power_may_name_the_acceleration_and_a_force_may_not() {
     let creep = "(loss_share: \"abs(F_drive) / f_n\", constants: {\"f_n\": 20000.0})";
     assert!((act::<Expression>(creep, &pulling).loss_share - 0.05).abs() < 1e-12);
     assert!(build::<Expression>(creep).unwrap().follows_drive());
-    assert!(!build::<Expression>(&copper).unwrap().follows_drive());
+    assert!(!build::<Expression>(copper).unwrap().follows_drive());
     let jerky = "(loss_share: \"abs(F_drive) / f_n * acceleration / g\", constants: {\"f_n\": 20000.0})";
     assert!(build::<Expression>(jerky).unwrap_err().contains("`acceleration` in what makes it"));
     let force = "(force: \"k_kg * acceleration\", constants: {\"k_kg\": 5.0})";

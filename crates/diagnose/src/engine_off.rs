@@ -2,7 +2,7 @@
 //! physics; it is what was done.
 
 use crate::Case;
-use crate::faults::SLOWEST_M_S;
+use crate::faults::{SLOWEST_M_S, stretches};
 use crate::recorded::Recorded;
 
 /// A shorter time without fuel may be one that a sensor missed [s].
@@ -39,14 +39,8 @@ fn off(run: &Recorded, modelled: &[f64]) -> Vec<(usize, usize)> {
     let Some(fuel) = run.measured.trace.get("fuel_rate_kg_s") else { return Vec::new() };
     let time_s = run.measured.trace.time_s();
     let is_off =
-        |index: &usize| run.motion.value[*index] < SLOWEST_M_S && fuel[*index] < NOTHING * modelled[*index];
-    let mut all: Vec<(usize, usize)> = Vec::new();
-    for index in (0..modelled.len().min(fuel.len())).filter(is_off) {
-        match all.last_mut() {
-            Some((_, last)) if *last + 1 == index => *last = index,
-            _ => all.push((index, index)),
-        }
-    }
+        |index: usize| run.motion.value[index] < SLOWEST_M_S && fuel[index] < NOTHING * modelled[index];
+    let mut all = stretches(is_off, modelled.len().min(fuel.len()));
     all.retain(|(from, to)| time_s[*to] - time_s[*from] >= LEAST_S);
     // A mean that reaches over its ends holds some of it.
     all.iter().map(|(from, to)| (from.saturating_sub(1), (to + 1).min(fuel.len() - 1))).collect()

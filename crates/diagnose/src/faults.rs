@@ -96,6 +96,18 @@ pub fn place(drive: &Recorded, from: usize, to: usize) -> Interval {
     }
 }
 
+/// First and last of the samples side by side that are flagged, of so many.
+pub fn stretches(flagged: impl Fn(usize) -> bool, count: usize) -> Vec<(usize, usize)> {
+    let mut all: Vec<(usize, usize)> = Vec::new();
+    for index in (0..count).filter(|index| flagged(*index)) {
+        match all.last_mut() {
+            Some((_, last)) if *last + 1 == index => *last = index,
+            _ => all.push((index, index)),
+        }
+    }
+    all
+}
+
 fn coarse(drives: &[Recorded], name: &str, sensors: &[(String, Sensor)]) -> Option<Fault> {
     let (mut repeated, mut count) = (0usize, 0usize);
     let mut steps: Vec<f64> = Vec::new();
@@ -312,4 +324,15 @@ fn lost(drives: &[Recorded]) -> Option<Fault> {
         unit: "1".to_owned(),
         stretches,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::stretches;
+
+    #[test]
+    fn stretches_are_where_flags_are_side_by_side() {
+        let flags = [true, false, true, true];
+        assert_eq!(stretches(|index| flags[index], flags.len()), [(0, 0), (2, 3)]);
+    }
 }

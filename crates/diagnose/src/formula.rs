@@ -89,7 +89,7 @@ impl Sought {
         }
         // Of the motion a law may know the force that was measured alone: the one that it asks for is made of it.
         let drive = |(run, said): (&Recorded, &Said)| match self.kind {
-            Kind::Motion => known_drive_n(run),
+            Kind::Motion => run.known_force_n(),
             _ => drive_n(run, said),
         };
         if self.target == Target::Share && [Kind::Shaft, Kind::Motion].contains(&self.kind) {
@@ -112,15 +112,6 @@ fn drive_n(run: &Recorded, said: &Said) -> Vec<f64> {
         if free { 0.0 } else { moved_n + said.resistance_n[index] }
     };
     (0..run.acceleration_m_s2.len()).map(asked_n).collect()
-}
-
-/// The force of the drive as far as it is known, sample by sample, and none elsewhere [N].
-fn known_drive_n(run: &Recorded) -> Vec<f64> {
-    let known = |force_n: &f64| if force_n.is_finite() { *force_n } else { 0.0 };
-    match &run.force_n {
-        Some(force_n) => force_n.iter().map(known).collect(),
-        None => vec![0.0; run.acceleration_m_s2.len()],
-    }
 }
 
 /// What the force of the drive takes, sample by sample [W].

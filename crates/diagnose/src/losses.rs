@@ -90,10 +90,6 @@ pub fn slow_powers(case: &Case, system: &System) -> Vec<Small> {
 pub fn half_samples(case: &Case, system: &System) -> Vec<Small> {
     /// Work that fuel becomes at the wheels, nearly, as a share of its heat.
     const OF_FUEL: f64 = 0.4;
-    fn force(run: &Recorded) -> Vec<f64> {
-        let known = |force: &f64| if force.is_finite() { *force } else { 0.0 };
-        run.force_n.iter().flatten().map(known).collect()
-    }
     let step_s = longest_renewal_s(&case.runs, "tractive_force_n")
         .max(longest_renewal_s(&case.runs, "speed_m_s"))
         .max(longest_renewal_s(&case.runs, "fuel_rate_kg_s"));
@@ -115,11 +111,12 @@ pub fn half_samples(case: &Case, system: &System) -> Vec<Small> {
     };
     let all = [
         of("speed_half_a_sample", |run| {
-            force(run).iter().zip(&run.acceleration_m_s2).map(|(force, a)| force * a).collect()
+            run.known_force_n().iter().zip(&run.acceleration_m_s2).map(|(force, a)| force * a).collect()
         }),
         of("force_half_a_sample", |run| {
             let slope =
-                local_fit(run.measured.trace.time_s(), &force(run), run.measured.how.smoothing_s).slope;
+                local_fit(run.measured.trace.time_s(), &run.known_force_n(), run.measured.how.smoothing_s)
+                    .slope;
             slope.iter().zip(&run.motion.value).map(|(slope, speed)| slope * speed).collect()
         }),
     ];

@@ -197,6 +197,15 @@ impl Recorded {
         })
     }
 
+    /// Force at the wheels as far as it is known, sample by sample, and none elsewhere [N].
+    pub fn known_force_n(&self) -> Vec<f64> {
+        let known = |force_n: &f64| if force_n.is_finite() { *force_n } else { 0.0 };
+        match &self.force_n {
+            Some(force_n) => force_n.iter().map(known).collect(),
+            None => vec![0.0; self.measured.trace.len()],
+        }
+    }
+
     /// What can drive the run forward.
     pub fn forward(&self) -> Option<Drive> {
         let trace = &self.measured.trace;

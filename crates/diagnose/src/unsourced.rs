@@ -5,6 +5,7 @@
 //! P + α |P_m| < P_m − 0.1 P₉₅   over the mean of some seconds, for every shift of the two against each other that clocks may have;
 //! P recorded, P_m as the recorded torque or force takes it, α what efficiencies may be wrong by, P₉₅ what the drive takes at most.
 
+use crate::faults::stretches;
 use crate::recorded::Recorded;
 use crate::sensors::with_channel;
 use crate::{Case, DiagnoseError};
@@ -35,7 +36,7 @@ pub fn leave_out(case: &mut Case) -> Result<(), DiagnoseError> {
     }
     let mut told: Vec<String> = Vec::new();
     for (run, flags) in sourceless.iter().enumerate() {
-        for (from, to) in stretches(flags) {
+        for (from, to) in stretches(|index| flags[index], flags.len()) {
             let time_s = case.runs[run].measured.trace.time_s();
             let (id, from_s, to_s) = (&case.runs[run].measured.id, time_s[from], time_s[to]);
             told.push(format!("{id} from {from_s:.0} to {to_s:.0} s"));
@@ -125,18 +126,6 @@ impl Means {
     }
 }
 
-/// First and last samples of the stretches that are flagged.
-fn stretches(flags: &[bool]) -> Vec<(usize, usize)> {
-    let mut all: Vec<(usize, usize)> = Vec::new();
-    for index in (0..flags.len()).filter(|index| flags[*index]) {
-        match all.last_mut() {
-            Some((_, last)) if *last + 1 == index => *last = index,
-            _ => all.push((index, index)),
-        }
-    }
-    all
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -148,10 +137,5 @@ mod tests {
         assert_eq!(means.over((1, 3)), None);
         assert_eq!(means.over((3, 4)), Some(5.0));
         assert_eq!(means.over((2, 2)), None);
-    }
-
-    #[test]
-    fn stretches_are_where_flags_are_side_by_side() {
-        assert_eq!(stretches(&[true, false, true, true]), [(0, 0), (2, 3)]);
     }
 }

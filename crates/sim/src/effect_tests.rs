@@ -156,6 +156,18 @@ fn drive(model: &Model, start_m_s: f64, phases: Vec<Phase>) -> Outcome {
     simulate(model, &cycle).unwrap()
 }
 
+/// A replay of the recorded force.
+fn by_force() -> Replay {
+    Replay {
+        drive: Drive::Force,
+        also: Vec::new(),
+        window_s: None,
+        smoothing_s: 0.05,
+        step_s: 0.01,
+        reversed_from_m: None,
+    }
+}
+
 fn hold(model: &Model) -> Outcome {
     drive(model, 10.0, vec![Phase::Hold { for_s: 2.0 }])
 }
@@ -183,14 +195,7 @@ fn a_share_that_hangs_on_the_force_is_asked_for_until_both_agree() {
     assert!((last(&outcome, "tractive_force_n") - expected_n).abs() < 1e-6);
     assert!((last(&outcome, "effect_0_n") + expected_n - 200.0).abs() < 1e-6);
     assert!(outcome.ledger.relative_residual() < 1e-9, "{:?}", outcome.ledger);
-    let how = Replay {
-        drive: Drive::Force,
-        also: Vec::new(),
-        window_s: None,
-        smoothing_s: 0.05,
-        step_s: 0.01,
-        reversed_from_m: None,
-    };
+    let how = by_force();
     let replayed = replay(&chafing(), &outcome.trace, &how).unwrap();
     assert!((last(&replayed, "speed_m_s") - 10.0).abs() < 1e-6);
 }
@@ -291,14 +296,7 @@ fn a_limit_holds_what_the_driver_asks_and_not_what_was_recorded() {
     let outcome = drive(&limited, 1.0, vec![Phase::Reach { speed_m_s: 2.0, acceleration_m_s2: 1.0 }]);
     assert!((outcome.trace.duration_s() - 2.0).abs() < 1e-9);
     let unlimited = drive(&model(vec![]), 1.0, vec![Phase::Reach { speed_m_s: 2.0, acceleration_m_s2: 1.0 }]);
-    let how = Replay {
-        drive: Drive::Force,
-        also: Vec::new(),
-        window_s: None,
-        smoothing_s: 0.05,
-        step_s: 0.01,
-        reversed_from_m: None,
-    };
+    let how = by_force();
     let replayed = replay(&limited, &unlimited.trace, &how).unwrap();
     assert!((last(&replayed, "speed_m_s") - 2.0).abs() < 1e-3);
 }
@@ -331,14 +329,7 @@ fn wheels_slip_by_a_recorded_force_that_no_driveline_gives() {
     let recorded = drive(&model(vec![]), 1.0, vec![Phase::Reach { speed_m_s: 2.0, acceleration_m_s2: 1.0 }]);
     let mut slips = model(vec![does(Action { slip_per_n: 5e-5, ..Action::default() })]);
     slips.driveline = Box::new(Idle);
-    let how = Replay {
-        drive: Drive::Force,
-        also: Vec::new(),
-        window_s: None,
-        smoothing_s: 0.05,
-        step_s: 0.01,
-        reversed_from_m: None,
-    };
+    let how = by_force();
     let replayed = replay(&slips, &recorded.trace, &how).unwrap();
     let of = |channel: &str| replayed.trace.get(channel).unwrap()[50];
     assert!((of("wheel_speed_m_s") - of("speed_m_s") / 0.94).abs() < 1e-9, "{}", of("wheel_speed_m_s"));

@@ -15,7 +15,7 @@ const fn variable(name: &'static str, unit: &'static str, of: fn(&Situation) -> 
     Variable { name, unit, of }
 }
 
-/// Those that only a power may name: the acceleration, which forces make, and the force of the drive and the speed of the engine,
+/// Those that only a power may name, but for the force of the drive in what is lost of it: the acceleration, which forces make, and the force of the drive and the speed of the engine,
 /// which are not known before them.
 pub(super) const MADE: [&str; 3] = [ACCELERATION, DRIVE, ENGINE];
 const ACCELERATION: &str = "acceleration";

@@ -10,6 +10,7 @@ use crate::balance::Kind;
 use crate::gram::{Column, Reduced, Whitened};
 use crate::noise::{Noise, Noises};
 use crate::rows::Chunk;
+use crate::sensors::interpolate;
 use crate::state::{Part, Stand, State};
 use nalgebra::DVector;
 
@@ -51,6 +52,30 @@ impl State<'_> {
             }
         }
         noises
+    }
+
+    /// Force that answers what a set leaves, sample by sample of every run [N].
+    pub fn answers_n(&self, stand: &Stand) -> Vec<Vec<f64>> {
+        let around = self.around(&self.answered(stand));
+        let of_run = |run: usize| {
+            let own = self
+                .system
+                .chunks
+                .iter()
+                .zip(&around)
+                .filter(|(chunk, _)| chunk.run == run && self.system.kind(chunk) == Kind::Motion);
+            let (mut at_s, mut left_n) = (Vec::new(), Vec::new());
+            for (row, value) in own.flat_map(|(chunk, rows)| chunk.rows.iter().zip(rows.iter())) {
+                at_s.push(row.time_s);
+                left_n.push(*value);
+            }
+            let time_s = self.case.runs[run].measured.trace.time_s();
+            match at_s.is_empty() {
+                true => vec![0.0; time_s.len()],
+                false => time_s.iter().map(|time_s| interpolate(&at_s, &left_n, *time_s)).collect(),
+            }
+        };
+        (0..self.case.runs.len()).map(of_run).collect()
     }
 
     /// What a force answers to: what is left, and the functions of a set, which their priors hold back.

@@ -2,11 +2,11 @@
 
 use crate::balance::Kind;
 use crate::catalogue::Cause;
-use crate::noise::{Noises, Whiteners};
+use crate::noise::Whiteners;
 use crate::recorded::Recorded;
 use crate::rows::Row;
 use crate::said::{Said, inputs};
-use crate::state::{Part, State};
+use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Shown, effect, lost_drive_n, per_newton};
 use crate::{Case, DiagnoseError, System};
 use headland_calibrate::statistics::median;
@@ -26,6 +26,8 @@ pub struct Sought {
     pub placed: bool,
     /// Whether it may name times and places.
     somewhen: bool,
+    /// Force of the drive that a share of it is lost of, sample by sample of every run [N].
+    drive_n: Vec<Vec<f64>>,
     /// What a formula of one makes of the rows of each balance that it shows in, sample by sample of every run: one watt or
     /// one newton, or all that a share is lost of.
     shows: Shown,
@@ -46,19 +48,50 @@ impl Sought {
             (Target::Share, _) => of_powers(case, system, kind, &driven_w(case))?,
             (Target::Power, _) => of_powers(case, system, kind, &ones(case))?,
         };
+        // Of the motion a law may know the force that was measured alone: the one that it asks for is made of it.
+        let drive_n = |(run, said): (&Recorded, &Said)| match (target, kind) {
+            (Target::Share, Kind::Motion) => run.known_force_n(),
+            (Target::Share, _) => drive_n(run, said),
+            _ => Vec::new(),
+        };
+        let drive_n = case.runs.iter().zip(&case.nominal).map(drive_n).collect();
         let placed = case.runs.iter().any(|run| run.measured.trace.get("position_m").is_some());
         Ok(shows.iter().any(|(shown, _)| *shown == kind).then_some(Self {
             kind,
             target,
             placed,
             somewhen: true,
+            drive_n,
             shows,
         }))
     }
 
     /// The same by a formula that names neither times nor places.
     pub fn anywhen(&self) -> Self {
-        Self { somewhen: false, shows: self.shows.clone(), ..*self }
+        Self { somewhen: false, drive_n: self.drive_n.clone(), shows: self.shows.clone(), ..*self }
+    }
+
+    /// The same of the drive without what its force answers, sample by sample of every run [N].
+    fn without_answers(&self, answers_n: &[Vec<f64>]) -> Self {
+        /// A force is none that is less than this [N].
+        const NONE_N: f64 = 1.0;
+        let without = |(drive_n, answers_n): (&Vec<f64>, &Vec<f64>)| {
+            drive_n.iter().zip(answers_n).map(|(drive_n, answer_n)| drive_n - answer_n).collect()
+        };
+        let drive_n: Vec<Vec<f64>> = self.drive_n.iter().zip(answers_n).map(without).collect();
+        let of_one = |(run, shown): (usize, &Vec<f64>)| {
+            let pairs = shown.iter().zip(self.drive_n[run].iter().zip(&drive_n[run]));
+            let share = |(shown, (all, left)): (&f64, (&f64, &f64))| {
+                if all.abs() < NONE_N { *shown } else { shown * left / all }
+            };
+            pairs.map(share).collect()
+        };
+        let shows = self
+            .shows
+            .iter()
+            .map(|(kind, of)| (*kind, of.iter().enumerate().map(of_one).collect()))
+            .collect();
+        Self { drive_n, shows, ..*self }
     }
 
     /// What a balance's rows are made of, of what a formula says of a run; nothing where it does not show there.
@@ -87,14 +120,9 @@ impl Sought {
         if self.target == Target::Share {
             all.retain(|variable| OF_A_DRIVE.contains(&variable.name.as_str()));
         }
-        // Of the motion a law may know the force that was measured alone: the one that it asks for is made of it.
-        let drive = |(run, said): (&Recorded, &Said)| match self.kind {
-            Kind::Motion => run.known_force_n(),
-            _ => drive_n(run, said),
-        };
-        if self.target == Target::Share && [Kind::Shaft, Kind::Motion].contains(&self.kind) {
-            let runs = case.runs.iter().zip(&case.nominal).map(drive).collect();
-            all.push(Variable { name: "F_drive".to_owned(), unit: "N".to_owned(), runs, finest: 0.0 });
+        if self.target == Target::Share {
+            let (name, unit) = ("F_drive".to_owned(), "N".to_owned());
+            all.push(Variable { name, unit, runs: self.drive_n.clone(), finest: 0.0 });
         }
         all
     }
@@ -207,17 +235,24 @@ fn every(system: &System, kind: Kind, run: usize) -> usize {
     least.map_or(1, |samples| (samples / SAMPLES).max(1))
 }
 
-/// The law that is worth it, beside what is known, and behind it the best of fewer terms.
+/// The law that is worth it, beside what is known, and behind it the best of fewer terms. Its noise is that of the set that says most,
+/// and what that one leaves a driver answers with force.
 pub fn laws(
     case: &Case,
     system: &System,
     pool: &Pool,
     beside: &[Part],
-    noises: &Noises,
+    known: &Stand,
     sought: &Sought,
 ) -> Result<Vec<Law>, DiagnoseError> {
+    let noises = &known.noises;
     let Some(whiteners) = noises.whiteners(&system.chunks) else { return Ok(Vec::new()) };
     let state = State { case, system, pool, fit: &case.fit };
+    let unanswered = match (sought.target, sought.kind) {
+        (Target::Share, Kind::Motion) => Some(sought.without_answers(&state.answers_n(known))),
+        _ => None,
+    };
+    let sought = unanswered.as_ref().unwrap_or(sought);
     let runs = 0..case.runs.len();
     let every = runs.clone().map(|run| every(system, sought.kind, run)).collect();
     let whitening = Whitening { system, whiteners, sought, every };

@@ -148,7 +148,7 @@ fn candidates(
     let anywhen = (!courses.is_empty() && rows <= MANY_ROWS).then(|| sought.anywhen());
     starts.extend(anywhen.iter().map(|anywhen| (Vec::new(), anywhen)));
     for (start, sought) in starts {
-        let told = laws(case, system, pool, &start, &found.stand.noises, sought)?;
+        let told = laws(case, system, pool, &start, &found.stand, sought)?;
         if let Some(law) = told.first().filter(|_| start.is_empty() && rows <= MANY_ROWS) {
             candidates.extend(with_less(case, system, pool, law, sought));
         }
@@ -165,8 +165,7 @@ fn candidates(
         let with = |part: &Part| start.iter().cloned().chain([part.clone()]).collect::<Vec<Part>>();
         if let Some(settled) = state.settle(&with(&part), &found.stand.noises)
             && (rows <= MANY_ROWS || worth(&settled) > worth(&found.stand))
-            && let Some(better) =
-                first_sound(laws(case, system, pool, &start, &settled.noises, sought)?, sought)
+            && let Some(better) = first_sound(laws(case, system, pool, &start, &settled, sought)?, sought)
         {
             law = better;
             part = add(case, system, pool, &law, sought);
@@ -280,7 +279,7 @@ fn beside(
         let terms = state.pieces(&stand) - listed.len();
         if !listed.is_empty()
             && rows <= MANY_ROWS
-            && let Some(law) = first_sound(laws(case, system, pool, &listed, &stand.noises, sought)?, sought)
+            && let Some(law) = first_sound(laws(case, system, pool, &listed, &stand, sought)?, sought)
             && law.terms <= terms
         {
             let part = add(case, system, pool, &law, sought);

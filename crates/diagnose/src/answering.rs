@@ -70,10 +70,10 @@ impl State<'_> {
                 left_n.push(*value);
             }
             let time_s = self.case.runs[run].measured.trace.time_s();
-            match at_s.is_empty() {
-                true => vec![0.0; time_s.len()],
-                false => time_s.iter().map(|time_s| interpolate(&at_s, &left_n, *time_s)).collect(),
+            if at_s.is_empty() {
+                return vec![0.0; time_s.len()];
             }
+            time_s.iter().map(|time_s| interpolate(&at_s, &left_n, *time_s)).collect()
         };
         (0..self.case.runs.len()).map(of_run).collect()
     }

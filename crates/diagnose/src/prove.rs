@@ -205,6 +205,9 @@ pub fn text(case: &Case, cured: &Cured, run: usize) -> Option<String> {
         "payload_change" => {
             format!("payload_change(times_s: [{}], masses_kg: [{}])", list(&knots), list(&values))
         }
+        "drawbar_load" => {
+            format!("drawbar_load(times_s: [{}], forces_n: [{}])", list(&edges(&knots)), list(&values))
+        }
         _ => format!("auxiliary_power(times_s: [{}], powers_w: [{}])", list(&edges(&knots)), list(&values)),
     })
 }

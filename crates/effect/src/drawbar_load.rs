@@ -1,12 +1,12 @@
 //! An implement or trailer that was not recorded.
 //!
-//! F = D₀ + D₁ |v| + D₂ v²        from one time to another
+//! F = D₀ + D₁ |v| + D₂ v² + F(t)        from one time to another; F(t) constant between its edges, 0 outside
 //!
 //! Source: draft as a polynomial of speed, ASABE D497 clause 4 (there for each width and depth of an implement).
 //! Leaves out slope and inertia of a trailer, which are `mass`, and the weight that an implement transfers.
 //! Fingerprint: a force against the motion that steps in and out in time, as when an implement is lowered and lifted.
 
-use crate::series::refuse;
+use crate::series::{check_steps, refuse, step};
 use headland_plugin::{Action, Bound, Card, Effect, Plugin, Refusal, Situation, parameter};
 use serde::Deserialize;
 use std::path::Path;
@@ -15,6 +15,7 @@ use std::path::Path;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DrawbarLoad {
+    #[serde(default)]
     force_n: f64,
     #[serde(default)]
     linear_n_s_m: f64,
@@ -24,6 +25,10 @@ pub struct DrawbarLoad {
     from_s: f64,
     #[serde(default = "always_after")]
     to_s: f64,
+    #[serde(default)]
+    times_s: Vec<f64>,
+    #[serde(default)]
+    forces_n: Vec<f64>,
 }
 
 const fn always_before() -> f64 {
@@ -38,13 +43,14 @@ impl Plugin for DrawbarLoad {
     const CARD: Card = Card {
         name: "drawbar_load",
         about: "an implement or trailer that was not recorded",
-        equation: "F = D₀ + D₁ |v| + D₂ v² from one time to another",
+        equation: "F = D₀ + D₁ |v| + D₂ v² + F(t) from one time to another",
         source: "draft as a polynomial of speed, ASABE D497 clause 4",
         validity: "one depth, width and soil; leaves out slope and inertia of a trailer",
         parameters: &[
             parameter("force_n", "N", "constant part, backward, D₀")
                 .must_be(Bound::NotNegative)
-                .usually(0.0, 150_000.0),
+                .usually(0.0, 150_000.0)
+                .or(0.0),
             parameter("linear_n_s_m", "N s/m", "part in proportion to speed, D₁")
                 .usually(-2000.0, 20_000.0)
                 .or(0.0),
@@ -55,12 +61,20 @@ impl Plugin for DrawbarLoad {
                 .usually(0.0, 1e5)
                 .or(always_before()),
             parameter("to_s", "s", "time at which it ends").usually(0.0, 1e5).or(always_after()),
+            parameter(
+                "times_s",
+                "[s]",
+                "edges of spells since the start of the run, increasing; none where left out, t",
+            )
+            .usually(0.0, 1e5),
+            parameter("forces_n", "[N]", "pull in each spell beside that, one less than edges, F")
+                .usually(0.0, 150_000.0),
         ],
     };
 
     fn settle(&mut self, _: &Path) -> Result<(), Refusal> {
         if self.to_s > self.from_s {
-            Ok(())
+            check_steps(("times_s", &self.times_s), ("forces_n", &self.forces_n))
         } else {
             Err(refuse(
                 "to_s",
@@ -74,7 +88,9 @@ impl Plugin for DrawbarLoad {
 impl Effect for DrawbarLoad {
     fn act(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Action {
         let v = at.speed_m_s.abs();
-        let draft_n = self.force_n + v * (self.linear_n_s_m + v * self.quadratic_n_s2_m2);
+        let draft_n = self.force_n
+            + v * (self.linear_n_s_m + v * self.quadratic_n_s2_m2)
+            + step(&self.times_s, &self.forces_n, at.time_s);
         let pulls = (self.from_s..self.to_s).contains(&at.time_s);
         Action { resistance_n: if pulls { draft_n } else { 0.0 }, ..Action::default() }
     }
@@ -99,6 +115,14 @@ mod tests {
             act::<DrawbarLoad>(&format!("(force_n: 500.0, {interval})"), &at_10_m_s()).resistance_n
         };
         assert_eq!((pull("from_s: 40.0"), pull("from_s: 51.0"), pull("to_s: 50.0")), (500.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn it_pulls_in_spells_beside_what_is_constant() {
+        let pull = |spells: &str| act::<DrawbarLoad>(&format!("({spells})"), &at_10_m_s()).resistance_n;
+        let spells = "times_s: [20.0, 45.0, 60.0], forces_n: [100.0, 2500.0]";
+        assert!(same(pull(spells), 2500.0) && same(pull(&format!("force_n: 500.0, {spells}")), 3000.0));
+        assert!(build::<DrawbarLoad>("(times_s: [20.0, 45.0], forces_n: [])").is_err());
     }
 
     #[test]

@@ -314,6 +314,7 @@ impl Cause {
             (true, "soft_ground") => Some(("rolling_resistance", "coefficient")),
             (true, _) if self.by_run => Some((self.id, self.terms[0].name)),
             (true, "payload_change") => Some(("mass", "extra_mass_kg")),
+            (true, "drawbar_load") => Some(("drawbar_load", "force_n")),
             (true, _) => Some(("auxiliary_power", "power_w")),
         }
     }

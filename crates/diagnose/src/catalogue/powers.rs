@@ -2,7 +2,7 @@
 
 use super::cause::{Cause, Form, LIMIT, cause};
 use super::term::{Term, linear, positive, shape};
-use super::{Around, fading, spell, windows};
+use super::{Around, MOTION, fading, spell, windows};
 use crate::balance::Kind;
 
 /// What is switched at the same time in every run belongs to a plan of the runs, which long ones do not have [s].
@@ -62,6 +62,23 @@ fn in_some_runs(usual_w: f64) -> Cause {
     .by_run()
 }
 
+/// A pull that comes and goes, where power alone tells of it: it takes more the faster the vehicle goes, as no consumer does.
+fn pull_in_spells(around: &Around) -> Cause {
+    /// Of the weight, as usual as any.
+    const SHARE: f64 = 0.02;
+    let usual_n = SHARE * around.mass_kg * around.gravity_m_s2;
+    cause(
+        "drawbar_load",
+        MOTION,
+        vec![positive("force_n", "N", usual_n).within(0.0, f64::INFINITY)],
+        "F = F(t)",
+        &["time_s"],
+        "a pull at the hitch that was not recorded",
+        "repeat without implement or trailer, or log the drawbar force",
+    )
+    .over(Form::OverTime)
+}
+
 /// Adds what the drive of this vehicle could be missing.
 pub fn powers(all: &mut Vec<Cause>, around: &Around) {
     let engine = around.channels.iter().any(|name| name == "fuel_rate_kg_s" || name == "engine_torque_n_m");
@@ -89,6 +106,9 @@ pub fn powers(all: &mut Vec<Cause>, around: &Around) {
     );
     if !engine {
         all.push(in_some_runs(usual_w));
+    }
+    if around.duration_s <= SHORT_RUN_S {
+        all.push(pull_in_spells(around));
     }
     if around.duration_s <= SHORT_RUN_S {
         all.push(

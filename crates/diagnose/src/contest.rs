@@ -26,11 +26,6 @@ impl Contest {
     }
 }
 
-/// Whether a cause is switched, as a consumer and an implement are.
-fn is_switched(cause: &Cause) -> bool {
-    cause.is_function() && cause.id == "auxiliary_power" || cause.is_course() && cause.id == "drawbar_load"
-}
-
 /// Jumps show a consumer where they say so many times as much as a steady function does.
 const JUMPS: f64 = 1.5;
 /// Trials whose noise is estimated anew.
@@ -106,7 +101,7 @@ impl State<'_> {
         let best = judged.iter().find(|one| !one.jumps());
         let shown = best.and_then(|one| {
             let cause = self.cause(&one.stand.parts.last()?.trial);
-            is_switched(cause).then_some(one.stand.score - stand.score)
+            cause.is_switched().then_some(one.stand.score - stand.score)
         });
         // In long recordings, where the noise of a minute is not that of an hour, there is always something to jump to.
         let most = if self.system.row_count() > MANY_ROWS { f64::INFINITY } else { JUMPS };
@@ -177,7 +172,7 @@ impl State<'_> {
         const SIZE: f64 = 0.3;
         let switched = self.pool.trials.iter().filter(|trial| {
             let cause = self.cause(trial);
-            is_switched(cause) && !out(cause) && self.apart(trial, &stand.parts)
+            cause.is_switched() && !out(cause) && self.apart(trial, &stand.parts)
         });
         // A battery shows what is switched better than fuel, in which an engine's power is much of the noise.
         let place = |wanted: Kind| self.system.kinds.iter().position(|kind| *kind == wanted);

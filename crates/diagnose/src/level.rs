@@ -1,4 +1,5 @@
-//! The level of a consumer that is switched: it takes one power wherever it is on. The greatest of many estimates of that is more.
+//! The level of what is switched: a consumer takes one power wherever it is on, and an implement pulls with one force. The greatest of
+//! many estimates of that is more.
 
 use crate::catalogue::Cause;
 use crate::profile::Function;
@@ -11,11 +12,11 @@ const MOST: (f64, f64) = (0.1, 0.9);
 /// … and those are nearer to each other than this share of the one in the middle.
 const ALIKE: f64 = 0.2;
 
-/// The level of a consumer, with its standard deviation; none where it has several, or one of its own in each run.
+/// The level of what is switched, with its standard deviation; none where it has several, or one of its own in each run.
 pub fn level(cause: &Cause, function: &Function) -> Option<(f64, f64)> {
     let knots =
         function.values.iter().flat_map(|(values, sds)| values.iter().copied().zip(sds.iter().copied()));
-    if cause.id == "auxiliary_power" && !cause.by_run { of_knots(&knots.collect::<Vec<_>>()) } else { None }
+    if cause.is_switched() && !cause.by_run { of_knots(&knots.collect::<Vec<_>>()) } else { None }
 }
 
 /// The same of values with their standard deviations.

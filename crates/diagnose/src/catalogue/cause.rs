@@ -161,6 +161,11 @@ impl Cause {
         self.form == Form::OverTime && !self.by_run
     }
 
+    /// Whether it is a function that is switched, as a consumer and an implement are.
+    pub fn is_switched(&self) -> bool {
+        self.is_function() && self.id == "auxiliary_power" || self.is_course() && self.id == "drawbar_load"
+    }
+
     /// The same cause with one speed more, by its place among all.
     pub fn with_one_more_speed(&self, all: &[Self]) -> Option<usize> {
         let wanted = |other: &Self| {

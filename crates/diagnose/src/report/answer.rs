@@ -48,11 +48,12 @@ pub fn report(
     let strain = strain(case, refined);
     let own = |cured: &Cured| cured.cause.class != Class::Artefact && cured.may_be_none();
     let slight = refined.causes.iter().any(own);
+    let courses = !refined.causes.is_empty() && refined.causes.iter().all(takes_its_own_course);
     let verdict = if beside.withheld.is_some() {
         Verdict::CannotTell
     } else {
         let strain = strain.map_or(0.0, |(_, strain)| strain);
-        verdict(&findings, &fit, &Doubts { timed: timed(refined), slight, strain })
+        verdict(&findings, &fit, &Doubts { timed: timed(refined), courses, slight, strain })
     };
     notes.extend(remarks(case, &found.unproven));
     notes.extend(words::whose(case, &proof.scenarios));
@@ -82,6 +83,7 @@ pub fn report(
         withheld: beside.withheld.as_deref(),
         null_space: &refined.null_space,
         own_spells: beside.events.iter().any(|event| !case.fit[event.run]),
+        own_courses: courses,
         own_levels: refined.causes.iter().any(|cured| cured.cause.by_run),
     };
     let diagnosis = Diagnosis {
@@ -166,11 +168,12 @@ pub fn inconclusive(
 
 /// Whether anything that was found is what each run tells of itself alone: a function of time, or spells.
 fn timed(refined: &Refined) -> bool {
-    let own = |cured: &Cured| {
-        let own = cured.function().is_some_and(|function| !function.spread.shared);
-        cured.in_single_runs() || own && cured.cause.is_course()
-    };
-    refined.causes.iter().any(own)
+    refined.causes.iter().any(|cured| cured.in_single_runs() || takes_its_own_course(cured))
+}
+
+/// Whether a cause takes a course of its own in each run.
+fn takes_its_own_course(cured: &Cured) -> bool {
+    cured.cause.is_course() && cured.function().is_some_and(|function| !function.spread.shared)
 }
 
 /// The free parameter that the rows would have furthest from what was known of it, and by how many standard deviations.

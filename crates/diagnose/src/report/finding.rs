@@ -140,6 +140,8 @@ impl FindingReport {
 pub struct Doubts {
     /// Whether anything that was found is what each run tells of itself alone.
     pub timed: bool,
+    /// Whether all that was found are courses that each run takes of its own, of which no other run tells.
+    pub courses: bool,
     /// Whether any cause may as well be none.
     pub slight: bool,
     /// How far a free parameter ends from what was known of it, in standard deviations.
@@ -173,7 +175,7 @@ pub fn verdict(findings: &[FindingReport], fit: &Fit, doubts: &Doubts) -> Verdic
     const MOST_LEFT_BY_A_LAW: f64 = 0.6;
     /// What each run tells of itself can follow a speed as near to the noise as that.
     const FOLLOWED: f64 = 3.0;
-    let Doubts { timed, slight, strain } = *doubts;
+    let Doubts { timed, courses, slight, strain } = *doubts;
     let far = fit.lack_of_fit > FAR;
     let any = |kind: FindingKind| findings.iter().any(|finding| finding.kind == kind);
     let Some(first) = findings.first() else {
@@ -194,7 +196,7 @@ pub fn verdict(findings: &[FindingReport], fit: &Fit, doubts: &Doubts) -> Verdic
     let follows = fit.signal != "speed_m_s" || fit.fitted.rmse_after < FOLLOWED * fit.fitted.noise;
     let says_little = fit.held_out.as_ref().is_some_and(leaves) && !(timed && follows);
     let rough = far && (!timed || far_fitted) || says_little;
-    let doubtful = claims && (rough || fit.grows() || slight) || strained;
+    let doubtful = claims && (rough || fit.grows() && !courses || slight) || strained;
     if first.kind == FindingKind::Unlisted && !first.is_doubtful() && !doubtful {
         Verdict::Unlisted
     } else if first.is_doubtful()

@@ -30,6 +30,8 @@ pub struct Told<'a> {
     pub null_space: &'a [String],
     /// Whether runs that were held out have spells of their own, which they themselves tell.
     pub own_spells: bool,
+    /// Whether all that was found are courses that each run takes of its own.
+    pub own_courses: bool,
     /// Whether anything that was found has a level of its own in each run.
     pub own_levels: bool,
 }
@@ -57,7 +59,7 @@ pub fn answer(told: &Told) -> String {
                 "Something is missing, and these recordings cannot tell which of several causes it is."
             } else if told.findings.iter().any(FindingReport::is_doubtful) {
                 "Something is missing, and of a part of it these recordings cannot tell which of several causes it is."
-            } else if told.fit.grows() {
+            } else if told.fit.grows() && !told.own_courses {
                 "Something is missing, and what explains it in the runs that were fitted does not in those held out, so \
                  that nothing of it is certain."
             } else if told.slight {
@@ -184,7 +186,7 @@ fn proof(told: &Told) -> String {
         Some(held) => one(format!("On the {} that it never saw", runs(held.runs.len())), held),
         None => one("On the fitted runs".to_owned(), &fit.fitted),
     };
-    let doubt = if !told.findings.is_empty() && fit.grows() {
+    let doubt = if !told.findings.is_empty() && fit.grows() && !told.own_courses {
         ": it does not help there, so it is no proof"
     } else {
         ""
@@ -193,6 +195,7 @@ fn proof(told: &Told) -> String {
         Some(_) if told.own_spells => {
             "; when and how strong its spells are, such a run tells itself, which could not be foreseen"
         }
+        Some(_) if told.own_courses => "; each run takes a course of its own, which no other foretells",
         Some(_) if told.own_levels => "; its own level such a run tells by its first half",
         _ => "",
     };

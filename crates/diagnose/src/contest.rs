@@ -44,7 +44,14 @@ impl State<'_> {
                 std::iter::once(cause.id).chain(part.spread.as_ref().and(cause.even()).map(|(even, _)| even))
             })
             .collect();
-        let out = |cause: &Cause| taken.contains(&cause.id) || cause.is_banned(banned);
+        // A consumer that is on for a while and a pull that power alone tells of would patch each other.
+        let on_and_off = |cause: &Cause| cause.is_switched() || cause.window().is_some();
+        let set = || stand.parts.iter().map(|part| self.cause(&part.trial));
+        let patches = |cause: &Cause| {
+            cause.pulls_in_spells() && set().any(on_and_off)
+                || on_and_off(cause) && set().any(Cause::pulls_in_spells)
+        };
+        let out = |cause: &Cause| taken.contains(&cause.id) || cause.is_banned(banned) || patches(cause);
         let sd = self.sd();
         let mut open: Vec<(f64, Part)> = Vec::new();
         for trial in &self.pool.trials {

@@ -85,6 +85,11 @@ impl Cured {
     pub fn in_single_runs(&self) -> bool {
         !self.events.is_empty() || self.cause.run.is_some()
     }
+
+    /// Whether it takes a course of its own in each run.
+    pub fn takes_its_own_course(&self) -> bool {
+        self.cause.is_course() && self.function().is_some_and(|function| !function.spread.shared)
+    }
 }
 
 /// A free parameter.
@@ -117,6 +122,12 @@ impl Refined {
     /// Values of the free parameters.
     pub fn values(&self) -> Vec<f64> {
         self.free.iter().map(|free| free.value).collect()
+    }
+
+    /// Whether all that was found is switched in each run by itself.
+    pub fn is_switched_alone(&self) -> bool {
+        let switched = |cured: &Cured| cured.cause.is_switched() && cured.takes_its_own_course();
+        !self.causes.is_empty() && self.causes.iter().all(switched)
     }
 
     /// Takes everything back: no cause is left, and the free parameters are as they were known before.

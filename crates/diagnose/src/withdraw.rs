@@ -98,16 +98,18 @@ impl Proven {
         Errors::over(&self.proof.each, telling).and_then(|errors| ratio(&errors))
     }
 
-    /// The runs held out that tell whether it is right: a map says nothing of places where no fitted run was.
+    /// The runs held out that tell whether it is right: a map says nothing of places where no fitted run was, nor what each run switches
+    /// of any other.
     fn telling(&self, case: &Case, system: &System, pool: &Pool) -> Vec<bool> {
         /// A run along which maps are known for less than this share tells nothing of them.
         const KNOWN: f64 = 0.6;
         let state = State { case, system, pool, fit: &case.fit };
         let parts: Vec<Part> =
             self.found.stand.parts.iter().filter(|part| part.spread.is_some()).cloned().collect();
+        let foretells = !self.refined.is_switched_alone();
         held_out(case)
             .zip(state.shares_known(&parts))
-            .map(|(held_out, known)| held_out && known > KNOWN)
+            .map(|(held_out, known)| held_out && known > KNOWN && foretells)
             .collect()
     }
 }

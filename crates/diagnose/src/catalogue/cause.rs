@@ -163,7 +163,12 @@ impl Cause {
 
     /// Whether it is a function that is switched, as a consumer and an implement are.
     pub fn is_switched(&self) -> bool {
-        self.is_function() && self.id == "auxiliary_power" || self.is_course() && self.id == "drawbar_load"
+        self.is_function() && self.id == "auxiliary_power" || self.pulls_in_spells()
+    }
+
+    /// Whether it is a pull that takes a course of its own in each run.
+    pub fn pulls_in_spells(&self) -> bool {
+        self.is_course() && self.id == "drawbar_load"
     }
 
     /// The same cause with one speed more, by its place among all.

@@ -48,7 +48,7 @@ pub fn report(
     let strain = strain(case, refined);
     let own = |cured: &Cured| cured.cause.class != Class::Artefact && cured.may_be_none();
     let slight = refined.causes.iter().any(own);
-    let courses = !refined.causes.is_empty() && refined.causes.iter().all(takes_its_own_course);
+    let courses = refined.is_switched_alone();
     let verdict = if beside.withheld.is_some() {
         Verdict::CannotTell
     } else {
@@ -168,12 +168,7 @@ pub fn inconclusive(
 
 /// Whether anything that was found is what each run tells of itself alone: a function of time, or spells.
 fn timed(refined: &Refined) -> bool {
-    refined.causes.iter().any(|cured| cured.in_single_runs() || takes_its_own_course(cured))
-}
-
-/// Whether a cause takes a course of its own in each run.
-fn takes_its_own_course(cured: &Cured) -> bool {
-    cured.cause.is_course() && cured.function().is_some_and(|function| !function.spread.shared)
+    refined.causes.iter().any(|cured| cured.in_single_runs() || cured.takes_its_own_course())
 }
 
 /// The free parameter that the rows would have furthest from what was known of it, and by how many standard deviations.

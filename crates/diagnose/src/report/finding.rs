@@ -140,7 +140,7 @@ impl FindingReport {
 pub struct Doubts {
     /// Whether anything that was found is what each run tells of itself alone.
     pub timed: bool,
-    /// Whether all that was found are courses that each run takes of its own, of which no other run tells.
+    /// Whether all that was found is switched in each run by itself, of which no other run tells.
     pub courses: bool,
     /// Whether any cause may as well be none.
     pub slight: bool,

@@ -30,7 +30,7 @@ pub struct Told<'a> {
     pub null_space: &'a [String],
     /// Whether runs that were held out have spells of their own, which they themselves tell.
     pub own_spells: bool,
-    /// Whether all that was found are courses that each run takes of its own.
+    /// Whether all that was found is switched in each run by itself.
     pub own_courses: bool,
     /// Whether anything that was found has a level of its own in each run.
     pub own_levels: bool,

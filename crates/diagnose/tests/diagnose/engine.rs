@@ -4,7 +4,8 @@ use super::changed;
 use super::setting::{found_of_scenario, named, recording_of_scenario};
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{Options, Verdict};
-use headland_recording::RecordedRun;
+use headland_plugin::Registry;
+use headland_recording::{RecordedRun, Recording};
 use headland_trace::{Origin, Trace};
 use std::sync::LazyLock;
 
@@ -296,10 +297,9 @@ fn a_fan_by_the_recorded_temperature_of_the_oil_is_no_course_of_each_run() {
     assert!((hot.value - HOT_C).abs() < 1.0, "{}", said.answer);
 }
 
-/// Consumers that some runs switch at other times than others are a course of each run, not what all runs have in common.
-#[test]
-fn consumers_that_each_run_switches_at_times_of_its_own_are_told() {
-    let registry = headland_stock::registry();
+/// Four runs of an engine's fuel, with what is hidden in them from one time to another [s]: in two of them at other times than in the
+/// other two.
+fn of_two_plans(hidden: &dyn Fn([u32; 2]) -> String, registry: &Registry) -> Recording {
     let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
         "speed_m_s" => value + 0.02 * draws.normal(),
         "fuel_rate_kg_s" => value + 8e-5 * draws.normal(),
@@ -307,15 +307,23 @@ fn consumers_that_each_run_switches_at_times_of_its_own_are_told() {
     };
     let channels = ["speed_m_s", "fuel_rate_kg_s"];
     let of = |times_s: [u32; 2]| {
-        let hidden =
-            format!("    effects: [auxiliary_power(times_s: {times_s:?}, powers_w: [8000])],\n    free:");
-        recording_of_scenario(&LONG.replacen("    free:", &hidden, 1), &registry, &channels, (63, &noisy))
+        let hidden = format!("    effects: [{}],\n    free:", hidden(times_s));
+        recording_of_scenario(&LONG.replacen("    free:", &hidden, 1), registry, &channels, (63, &noisy))
     };
     let (mut recording, other) = (of([60, 130]), of([25, 85]));
     for run in [1, 3] {
         recording.runs[run] = other.runs[run].clone();
     }
     recording.runs.remove(2);
+    recording
+}
+
+/// Consumers that some runs switch at other times than others are a course of each run, not what all runs have in common.
+#[test]
+fn consumers_that_each_run_switches_at_times_of_its_own_are_told() {
+    let registry = headland_stock::registry();
+    let consumer = |times_s| format!("auxiliary_power(times_s: {times_s:?}, powers_w: [8000])");
+    let recording = of_two_plans(&consumer, &registry);
     let found = found_of_scenario(&LONG, &recording, &Options::default(), &registry).unwrap();
     let said = &found.diagnosis;
     let ids: Vec<&str> = said.findings.iter().map(|finding| finding.id.as_str()).collect();
@@ -325,6 +333,34 @@ fn consumers_that_each_run_switches_at_times_of_its_own_are_told() {
     let power_w = course.get("auxiliary_power_w").unwrap();
     let edges = [[56.0, 64.0], [140.0, 120.0]].map(|edge| edge.map(|time_s| power_w[at(time_s)]));
     assert!(edges.iter().all(|[off, on]| (on - off).abs() > 10_000.0), "{edges:?}: {}", said.answer);
+}
+
+/// An implement that is lowered where each run comes to it takes more the faster the tractor goes, and is no consumer.
+#[test]
+fn a_pull_in_spells_is_told_from_a_consumer_by_fuel_alone() {
+    const PULL_N: f64 = 4000.0;
+    let registry = headland_stock::registry();
+    let pull = |[from_s, to_s]: [u32; 2]| {
+        format!("drawbar_load(force_n: {PULL_N:?}, from_s: {from_s}, to_s: {to_s})")
+    };
+    let recording = of_two_plans(&pull, &registry);
+    let found = found_of_scenario(&LONG, &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    let [one] = &said.findings[..] else { panic!("{}", said.answer) };
+    assert_eq!((one.id.as_str(), said.verdict), ("drawbar_load", Verdict::MissingPhysics), "{}", said.answer);
+    let force = one.parameters.iter().find(|one| one.name == "force_n").unwrap();
+    assert!((force.value / PULL_N - 1.0).abs() < 0.1, "{}", said.answer);
+    // The improved scenario of the first run pulls when it did.
+    let text = &found.scenarios[0];
+    assert!(text.contains("drawbar_load(times_s: ["), "{text}");
+    let course = &found.effects[0].trace;
+    let at = |time_s: f64| course.time_s().partition_point(|own| *own < time_s);
+    let power_w = course.get("drawbar_load_w").unwrap();
+    let speed_m_s = recording.runs[0].trace.get("speed_m_s").unwrap();
+    for (time_s, on) in [(40.0, 0.0), (80.0, 1.0), (110.0, 1.0), (150.0, 0.0)] {
+        let force_n = 0.85 * 0.448 * power_w[at(time_s)] / speed_m_s[at(time_s)];
+        assert!((force_n / PULL_N - on).abs() < 0.15, "{force_n} N at {time_s} s: {}", said.answer);
+    }
 }
 
 /// Downhill an engine is driven, and the consumer that nobody knew is the first that asks it for power: what it takes of fuel there is

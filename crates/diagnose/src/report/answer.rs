@@ -82,9 +82,8 @@ pub fn report(
         slight,
         withheld: beside.withheld.as_deref(),
         null_space: &refined.null_space,
-        own_spells: beside.events.iter().any(|event| !case.fit[event.run]),
-        own_courses: courses,
-        own_levels: refined.causes.iter().any(|cured| cured.cause.by_run),
+        own: told_by_itself(case, refined, beside.events),
+        stands_out: !after.stretches.is_empty(),
     };
     let diagnosis = Diagnosis {
         schema: "headland.diagnosis/1",
@@ -164,6 +163,19 @@ pub fn inconclusive(
         residuals: Vec::new(),
         shown: shown(case, system, None, &refined, &proof).unwrap_or_default(),
     })
+}
+
+/// What runs that were held out tell of themselves.
+fn told_by_itself(case: &Case, refined: &Refined, events: &[Event]) -> words::Own {
+    if events.iter().any(|event| !case.fit[event.run]) {
+        words::Own::Spells
+    } else if refined.is_switched_alone() {
+        words::Own::Courses
+    } else if refined.causes.iter().any(|cured| cured.cause.by_run) {
+        words::Own::Level
+    } else {
+        words::Own::Nothing
+    }
 }
 
 /// Whether anything that was found is what each run tells of itself alone: a function of time, or spells.

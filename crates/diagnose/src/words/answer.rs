@@ -28,12 +28,23 @@ pub struct Told<'a> {
     pub withheld: Option<&'a str>,
     /// What the data cannot separate.
     pub null_space: &'a [String],
-    /// Whether runs that were held out have spells of their own, which they themselves tell.
-    pub own_spells: bool,
-    /// Whether all that was found is switched in each run by itself.
-    pub own_courses: bool,
-    /// Whether anything that was found has a level of its own in each run.
-    pub own_levels: bool,
+    /// What runs that were held out tell of themselves.
+    pub own: Own,
+    /// Whether any stretch of what is left stands out.
+    pub stands_out: bool,
+}
+
+/// What a run tells of itself, and no other can foresee.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Own {
+    /// Nothing: all that was found is of every run.
+    Nothing,
+    /// Spells.
+    Spells,
+    /// All that was found is switched in each run by itself.
+    Courses,
+    /// A level.
+    Level,
 }
 
 /// The paragraph: what was looked at, what fails first, what was left out, what it explains, what cannot be told.
@@ -59,7 +70,7 @@ pub fn answer(told: &Told) -> String {
                 "Something is missing, and these recordings cannot tell which of several causes it is."
             } else if told.findings.iter().any(FindingReport::is_doubtful) {
                 "Something is missing, and of a part of it these recordings cannot tell which of several causes it is."
-            } else if told.fit.grows() && !told.own_courses {
+            } else if told.fit.grows() && told.own != Own::Courses {
                 "Something is missing, and what explains it in the runs that were fitted does not in those held out, so \
                  that nothing of it is certain."
             } else if told.slight {
@@ -186,19 +197,20 @@ fn proof(told: &Told) -> String {
         Some(held) => one(format!("On the {} that it never saw", runs(held.runs.len())), held),
         None => one("On the fitted runs".to_owned(), &fit.fitted),
     };
-    let doubt = if !told.findings.is_empty() && fit.grows() && !told.own_courses {
+    let doubt = if !told.findings.is_empty() && fit.grows() && told.own != Own::Courses {
         ": it does not help there, so it is no proof"
     } else {
         ""
     };
-    let own = match told.fit.held_out {
-        Some(_) if told.own_spells => {
+    let own = match told.own {
+        Own::Spells => {
             "; when and how strong its spells are, such a run tells itself, which could not be foreseen"
         }
-        Some(_) if told.own_courses => "; each run takes a course of its own, which no other foretells",
-        Some(_) if told.own_levels => "; its own level such a run tells by its first half",
-        _ => "",
+        Own::Courses => "; each run takes a course of its own, which no other foretells",
+        Own::Level => "; its own level such a run tells by its first half",
+        Own::Nothing => "",
     };
+    let own = if told.fit.held_out.is_some() { own } else { "" };
     format!("{text}{sensor}{doubt}{own}.")
 }
 
@@ -209,7 +221,7 @@ fn left_over(told: &Told) -> Option<String> {
     let lack = told.fit.lack_of_fit;
     let noise = told.fit.noise_in_words();
     let much = (lack.is_finite() && lack > MUCH).then(|| {
-        if told.verdict == Verdict::None {
+        if told.verdict == Verdict::None || !told.stands_out {
             format!("What is left is {lack:.1} times {noise}, without a pattern that stands out.")
         } else {
             format!(

@@ -4,7 +4,7 @@ mod answer;
 mod number;
 mod place;
 
-pub use answer::{Told, answer, inconclusive};
+pub use answer::{Own, Told, answer, inconclusive};
 pub use number::{number, plain};
 
 use crate::Case;

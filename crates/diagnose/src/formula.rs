@@ -109,6 +109,25 @@ impl Sought {
         said.iter().enumerate().map(|(index, value)| of_one[run][every * index] * value).collect()
     }
 
+    /// Whether a share of the drive that is lost is one that is gained, as often as not: the share of a nominal loss that was stated too
+    /// large may be.
+    pub fn gains(&self, law: &Law) -> bool {
+        /// Of all that the law takes and gives.
+        const MOST: f64 = 0.1;
+        if self.target != Target::Share {
+            return false;
+        }
+        let (mut gained, mut all) = (0.0, 0.0);
+        for (shares, drive_n) in law.prediction.iter().zip(&self.drive_n) {
+            for (share, drive_n) in shares.iter().zip(drive_n) {
+                let force_n = share * drive_n.abs();
+                gained += (-force_n).max(0.0);
+                all += force_n.abs();
+            }
+        }
+        gained > MOST * all
+    }
+
     /// What may stand in the formula. What is lost on the way of a force is no matter of places or times; turns load the gears
     /// between wheels that turn unlike each other.
     fn variables(&self, case: &Case) -> Vec<Variable> {

@@ -8,7 +8,7 @@ use crate::cycles::Cycles;
 use crate::gram::{Column, Estimate, Reduced, Whitened};
 use crate::look::MANY_ROWS;
 use crate::noise::Noises;
-use crate::profile::{Function, Profile, Spread, Widths};
+use crate::profile::{Function, Group, Profile, Spread, Widths};
 use crate::recorded::share_paths;
 use crate::rivals::twin;
 use crate::trial::{Pool, Trial};
@@ -107,6 +107,22 @@ fn choice(cause: &Cause) -> f64 {
         + if square { SQUARE } else { 0.0 }
 }
 
+/// Whether a course of time is one that a load can take: it comes, or goes, and to turn back takes a while. What swings to and fro in
+/// a minute is a force.
+fn is_a_load(course: &Function) -> bool {
+    /// So long is a load on the way up or down before it turns: a wagon or a hopper is filled beside a harvester in two minutes and
+    /// more [s].
+    const TURNS_S: f64 = 120.0;
+    let of_run = |(values, group): (&DVector<f64>, &Group)| {
+        let way: f64 = values.as_slice().windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
+        let lasts_s = group.step * group.count.saturating_sub(1) as f64;
+        (way, (values.max() - values.min()) * (1.0 + lasts_s / TURNS_S))
+    };
+    let runs = course.values.iter().map(|(values, _)| values).zip(&course.groups).map(of_run);
+    let (way, most) = runs.fold((0.0, 0.0), |(way, most), run| (way + run.0, most + run.1));
+    way <= most
+}
+
 impl<'a> State<'a> {
     /// The cause of a trial.
     pub fn cause(&self, trial: &Trial) -> &'a Cause {
@@ -184,7 +200,7 @@ impl<'a> State<'a> {
     }
 
     /// Whether the functions of a set stay within what their parameters can be, by two standard deviations and a tenth of
-    /// how far they reach, but for one knot in twenty.
+    /// how far they reach, but for one knot in twenty, and take no more turns than they can.
     pub fn functions_possible(&self, stand: &Stand) -> bool {
         const SIGMAS: f64 = 2.0;
         const SLACK: f64 = 0.1;
@@ -193,6 +209,9 @@ impl<'a> State<'a> {
         const MOST_BEYOND: f64 = 0.05;
         stand.parts.iter().zip(&stand.functions).all(|(part, function)| {
             let Some(function) = function else { return true };
+            if self.id(&part.trial) == "payload_change" && !is_a_load(function) {
+                return false;
+            }
             let term = &self.cause(&part.trial).terms[part.trial.terms[0]];
             let position = stand.position(part.trial.columns[0]);
             let even = position.map_or(0.0, |position| stand.estimate.beta[position]);

@@ -309,9 +309,9 @@ fn first_sound(laws: Vec<Law>, sought: &Sought) -> Option<Law> {
     laws.into_iter().next().filter(|law| is_sound(law, sought))
 }
 
-/// Whether a law draws no map, and each of its terms is known.
+/// Whether a law draws no map, each of its terms is known, and what is lost on a way is lost.
 fn is_sound(law: &Law, sought: &Sought) -> bool {
-    !is_map(law, sought.target, sought.placed) && !is_undetermined(law)
+    !is_map(law, sought.target, sought.placed) && !is_undetermined(law) && !sought.gains(law)
 }
 
 /// Whether a law draws a map: softer ground and slopes are that by their definition, and so is a consumer that is switched

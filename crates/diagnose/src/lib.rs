@@ -26,6 +26,7 @@ mod contradiction;
 mod crossval;
 mod curved;
 mod cycles;
+mod denied;
 mod elsewhere;
 mod engine_off;
 mod error;

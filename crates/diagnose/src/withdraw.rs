@@ -3,6 +3,7 @@
 use crate::balance::Kind;
 use crate::catalogue::{Class, Form};
 use crate::contradiction::withhold;
+use crate::denied::instead;
 use crate::events::Event;
 use crate::faults::Fault;
 use crate::in_doubt;
@@ -16,7 +17,7 @@ use crate::words::each_once;
 use crate::{Case, DiagnoseError, System};
 
 /// An error that rises by less than this share rises by what a few runs are apart from the others.
-const RISES: f64 = 0.02;
+pub const RISES: f64 = 0.02;
 /// What leaves less than this share of the error that there is without it is not idle, however good the nominal scenario is.
 const HELPS: f64 = 0.6;
 /// What leaves more than this share of the error that there is without it is not missed.
@@ -94,7 +95,7 @@ impl Proven {
     }
 
     /// The same over some runs alone.
-    fn worsened_in(&self, telling: &[bool]) -> Option<f64> {
+    pub fn worsened_in(&self, telling: &[bool]) -> Option<f64> {
         Errors::over(&self.proof.each, telling).and_then(|errors| ratio(&errors))
     }
 
@@ -146,18 +147,22 @@ pub fn proven(
     let by = Some(told_by(system, &best.refined));
     let telling = best.telling(case, system, pool);
     while let Some(worsened) = best.worsened_in(&telling).filter(|ratio| *ratio > 1.0 + RISES) {
-        let mut least: Option<(f64, Proven)> = None;
+        let mut least: Option<(f64, usize, Proven)> = None;
         for place in 0..best.found.stand.parts.len() {
             let Some(found) = without(case, system, pool, &best.found, place) else { continue };
             let lesser = Proven::of(case, system, pool, found, events, by)?;
             if let Some(ratio) =
                 lesser.worsened_in(&telling).filter(|ratio| *ratio < (1.0 + RISES) * worsened)
-                && least.as_ref().is_none_or(|(other, _)| ratio < *other)
+                && least.as_ref().is_none_or(|(other, ..)| ratio < *other)
             {
-                least = Some((ratio, lesser));
+                least = Some((ratio, place, lesser));
             }
         }
-        let Some((_, lesser)) = least else { break };
+        let Some((_, place, lesser)) = least else { break };
+        if let Some(other) = instead(case, system, pool, &best, place, (events, by, &telling))? {
+            best = other;
+            break;
+        }
         best = lesser;
         withdrawn = true;
     }

@@ -3,7 +3,7 @@
 use super::setting::{ELECTRIC, found_of_scenario, named, recording_of_scenario};
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{DiagnoseError, Diagnosed, Options, Verdict};
-use headland_recording::Recording;
+use headland_recording::{RecordedRun, Recording};
 use headland_trace::{Origin, Trace};
 
 /// Ten coast-downs to and fro, from two speeds; `more` are further fields.
@@ -105,6 +105,41 @@ fn a_late_speed_is_told_by_coast_downs_beside_a_run_that_was_driven() {
     recording.runs.push(driven);
     let late = by_a_late_receiver(recording);
     is_late(&found_of_scenario(&coasts, &late, &Options::default(), &registry).unwrap());
+}
+
+/// Where all fitted runs coast, drag in neutral is a level of rolling resistance by what they say; a run that was driven and held out
+/// denies the level, and shows nothing of the drag in neutral.
+#[test]
+fn a_driven_run_that_is_held_out_leaves_the_drag_in_neutral() {
+    const DRAG_N: f64 = 700.0;
+    let registry = headland_stock::registry();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.03 * draws.normal(),
+        "tractive_force_n" => value + 100.0 * draws.normal(),
+        _ => value,
+    };
+    let electric = |effects: &str| {
+        scenario(effects, "")
+            .replace("driveline: Neutral()", &format!("driveline: {ELECTRIC}"))
+            .replace("(name: \"ground.soil.coefficient\", sd: 0.001, bounds: (0.005, 0.1)),", "")
+    };
+    let hidden = electric(&format!("neutral_drag(force_n: {DRAG_N:?}, viscous_n_s_m: 0)"));
+    let drives = hidden.replace(
+        "cycle: [Coast(until: SpeedBelow(speed_m_s: 0.6))]",
+        "cycle: [Hold(for_s: 20), Reach(speed_m_s: 5, acceleration_m_s2: 0.3), Hold(for_s: 20)]",
+    );
+    let channels = ["speed_m_s", "tractive_force_n", "coasting"];
+    let of = |text: &str| recording_of_scenario(text, &registry, &channels, (47, &noisy));
+    let mut recording = of(&hidden);
+    recording.runs.truncate(4);
+    let driven = RecordedRun { id: "driven".to_owned(), held_out: true, ..of(&drives).runs.remove(0) };
+    recording.runs.push(driven);
+    let found = found_of_scenario(&electric(""), &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    let [drag] = &said.findings[..] else { panic!("{}", said.answer) };
+    assert_eq!((drag.id.as_str(), said.verdict), ("neutral_drag", Verdict::CannotTell), "{}", said.answer);
+    let force = drag.parameters.iter().find(|one| one.name == "force_n").unwrap();
+    assert!((force.value / DRAG_N - 1.0).abs() < 0.35, "{}", said.answer);
 }
 
 fn noted(found: &Diagnosed, what: &str) -> bool {

@@ -21,6 +21,8 @@ use nalgebra::{Matrix2, Vector2};
 const LATENCY: &str = "latency";
 /// No receiver is later than this, and no driver [s].
 const LONGEST_S: f64 = 0.8;
+/// Filters of loggers take so long, all channels alike [s].
+const FILTERED_S: f64 = 0.05;
 /// So much of a run is looked at [s].
 const WINDOW_S: f64 = 2.5;
 /// Delays are tried so far apart [s].
@@ -120,6 +122,14 @@ pub fn set_right(
     case.no_faults.push(LATENCY);
     case.suppose()?;
     let half = HALF_95 * late.sd;
+    if late.value - half < FILTERED_S {
+        case.study.notes.push(format!(
+            "Speed goes on as it was for {:.2} s at the begin of the coast-downs, which the filter of a logger does: that is no fault, \
+             and it was corrected.",
+            late.value
+        ));
+        return Ok(None);
+    }
     Ok(Some(Fault {
         id: LATENCY,
         channel: "speed_m_s".to_owned(),

@@ -30,8 +30,8 @@ const CLEARLY: f64 = 5.0;
 /// Runs differ from each other by less than this share of a scale that is wrong.
 const ALIKE: f64 = 0.3;
 
-/// Length of a piece [m]; a grid of a metre, as of five digits of a degree, is a hundredth of it.
-const PIECE_M: f64 = 50.0;
+/// Length of a piece [m]; a grid of a metre, as of five digits of a degree, is a hundredth of it. Short runs have shorter ones.
+const PIECES_M: [f64; 2] = [50.0, 20.0];
 /// Fewer places make no parabola that is better than its ends.
 const PLACES: usize = 8;
 /// Fewer pieces in all tell nothing.
@@ -75,11 +75,11 @@ struct Piece {
 
 /// The scale of `speed_m_s`, where places tell it that were measured by themselves.
 pub fn scale(runs: &[RecordedRun]) -> Option<Scale> {
-    let pieces: Vec<Piece> =
-        runs.iter().enumerate().flat_map(|(run, recorded)| pieces(run, &recorded.trace)).collect();
-    if pieces.len() < FEWEST {
-        return None;
-    }
+    let of_length = |piece_m: f64| -> Vec<Piece> {
+        let runs = runs.iter().enumerate();
+        runs.flat_map(|(run, recorded)| pieces(run, &recorded.trace, piece_m)).collect()
+    };
+    let pieces = PIECES_M.into_iter().map(of_length).find(|pieces| pieces.len() >= FEWEST)?;
     let (first, sd) = fitted(&pieces)?;
     // A place that was made of the speed follows it more closely than its noise lets any other one.
     let noise = median(&pieces.iter().map(|piece| piece.noise).collect::<Vec<_>>());
@@ -155,8 +155,8 @@ fn coordinates(trace: &Trace) -> Option<Vec<Vec<f64>>> {
     Some(vec![east, north])
 }
 
-/// The pieces of a run; none where it does not know where it was.
-fn pieces(run: usize, trace: &Trace) -> Vec<Piece> {
+/// The pieces of a run, each of this length; none where it does not know where it was.
+fn pieces(run: usize, trace: &Trace, piece_m: f64) -> Vec<Piece> {
     let (Some(speed), Some(way)) = (trace.get("speed_m_s"), coordinates(trace)) else { return Vec::new() };
     let time_s = trace.time_s();
     let noise = noise(speed);
@@ -174,7 +174,7 @@ fn pieces(run: usize, trace: &Trace) -> Vec<Piece> {
         }
         let far = driven[driven.len() - 1] + mean * passed_s;
         driven.push(far);
-        if far >= PIECE_M {
+        if far >= piece_m {
             let span = from..=index;
             let way: Vec<&[f64]> = way.iter().map(|one| &one[span.clone()]).collect();
             all.extend(piece(run, &time_s[span.clone()], &speed[span], &driven, &way, noise));

@@ -87,11 +87,7 @@ impl State<'_> {
 
     /// The set without causes that had to be what they cannot be once others were gone; those are told as `unproven`.
     fn without_impossible(&self, mut best: Stand, unproven: &mut Vec<usize>) -> Option<Stand> {
-        let beyond = |best: &Stand| {
-            let value = self.first_beyond(&best.parts, &best.estimate.beta);
-            value.or_else(|| self.first_swinging(best))
-        };
-        while let Some(place) = beyond(&best) {
+        while let Some(place) = self.first_beyond(&best.parts, &best.estimate.beta) {
             let mut parts = best.parts.clone();
             unproven.push(parts.remove(place).trial.cause);
             best = self.settle(&parts, &best.noises)?;

@@ -8,7 +8,7 @@ use crate::cycles::Cycles;
 use crate::gram::{Column, Estimate, Reduced, Whitened};
 use crate::look::MANY_ROWS;
 use crate::noise::Noises;
-use crate::profile::{Function, Group, Profile, Spread, Widths};
+use crate::profile::{Function, Profile, Spread, Widths};
 use crate::recorded::share_paths;
 use crate::rivals::twin;
 use crate::trial::{Pool, Trial};
@@ -107,24 +107,6 @@ fn choice(cause: &Cause) -> f64 {
         + if square { SQUARE } else { 0.0 }
 }
 
-/// Whether a course of time is one that a load can take: it comes, or goes, and to turn back takes a while. What swings to and fro in
-/// a minute is a force.
-fn is_a_load(course: &Function) -> bool {
-    /// So long is a load on the way up or down before it turns: a wagon or a hopper is filled beside a harvester in two minutes and
-    /// more [s].
-    const TURNS_S: f64 = 120.0;
-    /// An estimate wavers by such a share of that more.
-    const WAVERS: f64 = 1.4;
-    let of_run = |(values, group): (&DVector<f64>, &Group)| {
-        let way: f64 = values.as_slice().windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
-        let lasts_s = group.step * group.count.saturating_sub(1) as f64;
-        (way, (values.max() - values.min()) * (1.0 + lasts_s / TURNS_S))
-    };
-    let runs = course.values.iter().map(|(values, _)| values).zip(&course.groups).map(of_run);
-    let (way, most) = runs.fold((0.0, 0.0), |(way, most), run| (way + run.0, most + run.1));
-    way <= WAVERS * most
-}
-
 impl<'a> State<'a> {
     /// The cause of a trial.
     pub fn cause(&self, trial: &Trial) -> &'a Cause {
@@ -199,14 +181,6 @@ impl<'a> State<'a> {
             }
         }
         None
-    }
-
-    /// The first load of a set that swings as no load can.
-    pub fn first_swinging(&self, stand: &Stand) -> Option<usize> {
-        stand.parts.iter().zip(&stand.functions).position(|(part, function)| {
-            self.id(&part.trial) == "payload_change"
-                && function.as_ref().is_some_and(|course| !is_a_load(course))
-        })
     }
 
     /// Whether the functions of a set stay within what their parameters can be, by two standard deviations and a tenth of

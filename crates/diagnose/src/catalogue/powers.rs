@@ -109,8 +109,6 @@ pub fn powers(all: &mut Vec<Cause>, around: &Around) {
     }
     if around.duration_s <= SHORT_RUN_S {
         all.push(pull_in_spells(around));
-    }
-    if around.duration_s <= SHORT_RUN_S {
         all.push(
             cause(
                 "auxiliary_power",

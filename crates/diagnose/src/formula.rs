@@ -128,6 +128,31 @@ impl Sought {
         gained > MOST * all
     }
 
+    /// Whether of a force that rises hardly more goes on: no drive loses all that is added to it, and such a law answers a force with
+    /// itself, whatever the vehicle does.
+    pub fn answers_itself(&self, law: &Law) -> bool {
+        /// Of what the force rises by.
+        const MOST: f64 = 0.5;
+        if self.target != Target::Share {
+            return false;
+        }
+        let pairs = || {
+            let runs = law.prediction.iter().zip(&self.drive_n);
+            runs.flat_map(|(shares, drive_n)| shares.iter().zip(drive_n)).map(|(share, drive_n)| {
+                let force_n = drive_n.abs();
+                (force_n, share * force_n)
+            })
+        };
+        let count = pairs().count().max(1) as f64;
+        let (force_n, lost_n) = pairs()
+            .fold((0.0, 0.0), |(force_n, lost_n), pair| (force_n + pair.0 / count, lost_n + pair.1 / count));
+        let (square, product) = pairs().fold((0.0, 0.0), |(square, product), pair| {
+            let apart_n = pair.0 - force_n;
+            (square + apart_n * apart_n, product + apart_n * (pair.1 - lost_n))
+        });
+        product > MOST * square
+    }
+
     /// What may stand in the formula. What is lost on the way of a force is no matter of places or times; turns load the gears
     /// between wheels that turn unlike each other.
     fn variables(&self, case: &Case) -> Vec<Variable> {
@@ -455,13 +480,36 @@ fn tells_more(case: &Case, engine_rad_s: &[Vec<f64>]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{enough, turns};
+    use super::{Sought, enough, turns};
+    use crate::balance::Kind;
+    use headland_symbolic::{Law, Target};
 
     #[test]
     fn to_and_fro_on_one_line_is_no_turn() {
         let lane = vec![vec![0.3, 0.31, 0.29], vec![0.3 + std::f64::consts::PI; 3]];
         assert!(!turns(&lane));
         assert!(turns(&[vec![0.0, 0.5, 1.0, 1.5, 2.0, 2.5]]));
+    }
+
+    #[test]
+    fn a_loss_that_takes_all_that_a_force_rises_by_answers_with_itself() {
+        let force_n: Vec<f64> = (20..=130).step_by(10).map(f64::from).collect();
+        let sought = Sought {
+            kind: Kind::Motion,
+            target: Target::Share,
+            placed: false,
+            somewhen: true,
+            drive_n: vec![force_n.clone()],
+            shows: Vec::new(),
+        };
+        let loses = |share: &dyn Fn(f64) -> f64| {
+            let prediction = vec![force_n.iter().map(|force_n| share(*force_n)).collect()];
+            Law { prediction, ..Law::default() }
+        };
+        assert!(sought.answers_itself(&loses(&|force_n| 1.06 * (force_n / 119.0).tanh())));
+        // A fifth of the greatest force, by its square.
+        assert!(!sought.answers_itself(&loses(&|force_n| 0.2 * force_n / 130.0)));
+        assert!(!sought.answers_itself(&loses(&|_| 0.3)));
     }
 
     #[test]

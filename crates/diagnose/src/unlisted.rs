@@ -309,9 +309,14 @@ fn first_sound(laws: Vec<Law>, sought: &Sought) -> Option<Law> {
     laws.into_iter().next().filter(|law| is_sound(law, sought))
 }
 
-/// Whether a law draws no map, each of its terms is known, and what is lost on a way is lost.
+/// Whether a law draws no map, each of its terms is known, and what is lost on a way is that.
 fn is_sound(law: &Law, sought: &Sought) -> bool {
-    !is_map(law, sought.target, sought.placed) && !is_undetermined(law) && !sought.gains(law)
+    !is_map(law, sought.target, sought.placed) && !is_undetermined(law) && is_lost(law, sought)
+}
+
+/// Whether what is lost on a way is lost, and is not all of it.
+fn is_lost(law: &Law, sought: &Sought) -> bool {
+    !sought.gains(law) && !sought.answers_itself(law)
 }
 
 /// Whether a law draws a map: softer ground and slopes are that by their definition, and so is a consumer that is switched
@@ -546,7 +551,7 @@ fn with_less(
     let terms: Vec<Part> = law
         .each
         .iter()
-        .filter(|term| !is_map(term, sought.target, sought.placed))
+        .filter(|term| !is_map(term, sought.target, sought.placed) && is_lost(term, sought))
         .map(|term| add(case, system, pool, term, sought))
         .collect();
     let mut all: Vec<Vec<Part>> = terms.iter().map(|term| vec![term.clone()]).collect();

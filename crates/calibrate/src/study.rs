@@ -139,8 +139,12 @@ pub struct Study<'a> {
 
 /// Samples farther apart are not of one run [s]: thirty days. A clock that was set on the way jumps by years.
 const LONGEST_JUMP_S: f64 = 30.0 * 86_400.0;
-/// Half width of the local fit of recorded speed, in samples, where the scenario does not say.
+/// Half width of the local fit of recorded speed, in samples, where the scenario does not say: so many,
 const SMOOTHING_SAMPLES: f64 = 5.0;
+/// no longer than this [s], or an acceleration that comes and goes within seconds would be less than it was,
+const LONGEST_SMOOTHING_S: f64 = 1.5;
+/// and no fewer than a parabola needs.
+const LEAST_SMOOTHING_SAMPLES: f64 = 2.0;
 /// Recordings longer than this are driven forward in windows [s].
 const LONG_S: f64 = 180.0;
 /// Their length [s].
@@ -493,7 +497,8 @@ fn measured(
     }
     let also = settings.inputs.clone().unwrap_or_else(|| inputs_of(&trace, drive));
     let period_s = trace.period_s();
-    let smoothing_s = settings.smoothing_s.unwrap_or(SMOOTHING_SAMPLES * period_s);
+    let usual_s = (SMOOTHING_SAMPLES * period_s).min(LONGEST_SMOOTHING_S);
+    let smoothing_s = settings.smoothing_s.unwrap_or(usual_s.max(LEAST_SMOOTHING_SAMPLES * period_s));
     let forward = drive != Drive::Speed && drive != Drive::Coast;
     let window_s = settings.window_s.or((forward && trace.duration_s() > LONG_S).then_some(WINDOW_S));
     let mut known = Vec::new();

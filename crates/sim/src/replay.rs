@@ -318,8 +318,20 @@ impl<'a> Tape<'a> {
         } else {
             value
         };
-        // Nobody reverses on a braking motor: at rest it only holds.
-        Command::Recorded(if speed <= 0.0 { force.max(0.0) } else { force })
+        // Nobody reverses on a braking motor: at rest it only holds, but where the recording goes backward.
+        Command::Recorded(if speed <= 0.0 && !self.is_backward(index) { force.max(0.0) } else { force })
+    }
+
+    /// Whether the recorded vehicle goes backward, or is about to.
+    fn is_backward(&self, index: usize) -> bool {
+        let next = (index + 1).min(self.motion.value.len() - 1);
+        self.motion.value[index].min(self.motion.value[next]) <= -STANDSTILL_M_S
+    }
+
+    /// The speed that a sample begins with: noise about standing is none backward.
+    fn begun_m_s(&self, index: usize) -> f64 {
+        let speed = self.motion.value[index];
+        if self.is_backward(index) { speed } else { speed.max(0.0) }
     }
 
     /// Whether something drives the vehicle of which nothing is known but how it moved.
@@ -364,8 +376,7 @@ impl<'a> Tape<'a> {
     }
 
     fn forward(&self, model: &Model, how: &Replay) -> Result<Outcome, ReplayError> {
-        let mut machine =
-            Machine::new(model, self.time_s[0], self.position_m[0], self.motion.value[0].max(0.0));
+        let mut machine = Machine::new(model, self.time_s[0], self.position_m[0], self.begun_m_s(0));
         self.adopt_charge(&mut machine, 0);
         let mut recorder = Recorder::new(&machine).only(self.names);
         let mut window_start_s = self.time_s[0];
@@ -374,12 +385,12 @@ impl<'a> Tape<'a> {
             let followed = self.is_followed(how, index);
             let starts = followed || index > 0 && self.is_followed(how, index - 1);
             if starts || how.window_s.is_some_and(|window_s| begin_s - window_start_s >= window_s) {
-                machine.set_motion(self.position_m[index], self.motion.value[index].max(0.0));
+                machine.set_motion(self.position_m[index], self.begun_m_s(index));
                 self.adopt_charge(&mut machine, index);
                 window_start_s = begin_s;
             }
             let span_s = self.time_s[next] - begin_s;
-            let stands = [index, next].iter().all(|at| self.motion.value[*at] < STANDSTILL_M_S);
+            let stands = [index, next].iter().all(|at| self.motion.value[*at].abs() < STANDSTILL_M_S);
             if stands {
                 machine.set_motion(machine.position_m(), 0.0);
             }

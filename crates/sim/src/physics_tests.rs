@@ -372,3 +372,41 @@ fn a_replay_of_the_models_own_drive_repeats_it() {
     assert!((force[middle] / expected[middle] - 1.0).abs() < 1e-6);
     assert_eq!(backward.channel("speed_m_s").unwrap().origin, headland_trace::Origin::Driven);
 }
+
+/// A shuttle that swings to and fro, with the force that Newton asks for, is moved as it was.
+#[test]
+fn a_recording_that_goes_backward_is_replayed_backward() {
+    const GREATEST_M_S: f64 = 3.0;
+    const PERIOD_S: f64 = 40.0;
+    const STEP_S: f64 = 0.02;
+    const AREA_M2: f64 = 6.0;
+    let model = tractor(f64::INFINITY, AREA_M2);
+    let time_s: Vec<f64> = (0..=4000).map(|sample| f64::from(sample) * STEP_S).collect();
+    let turn = std::f64::consts::TAU / PERIOD_S;
+    let speed = |time_s: f64| GREATEST_M_S * (turn * time_s).sin();
+    let force = |time_s: f64| {
+        let v = speed(time_s);
+        let resistance_n =
+            MASS_KG * GRAVITY_M_S2 * COEFFICIENT + 0.5 * model.air.density_kg_m3 * AREA_M2 * v * v;
+        MASS_KG * GREATEST_M_S * turn * (turn * time_s).cos() + resistance_n.copysign(v)
+    };
+    let all = |of: &dyn Fn(f64) -> f64| time_s.iter().map(|time_s| of(*time_s)).collect::<Vec<f64>>();
+    let (speeds, forces) = (all(&speed), all(&force));
+    let mut recorded = headland_trace::Trace::new(time_s.clone()).unwrap();
+    recorded.push("speed_m_s", speeds.clone(), headland_trace::Origin::Measured).unwrap();
+    recorded.push("tractive_force_n", forces, headland_trace::Origin::Measured).unwrap();
+    let how = |window_s: Option<f64>| Replay {
+        drive: Drive::Force,
+        also: Vec::new(),
+        window_s,
+        smoothing_s: 0.05,
+        step_s: STEP_S,
+        reversed_from_m: None,
+    };
+    for window_s in [None, Some(7.0)] {
+        let moved = replay(&model, &recorded, &how(window_s)).unwrap().trace;
+        let pairs = moved.get("speed_m_s").unwrap().iter().zip(&speeds);
+        let worst = pairs.map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+        assert!(worst < 0.05, "{window_s:?}: {worst} m/s");
+    }
+}

@@ -7,6 +7,7 @@
 //! decide.
 
 use crate::report::{Diagnosed, Diagnosis, FindingReport, Fit, FitRuns, Verdict};
+use crate::rivals::twin;
 use crate::{DiagnoseError, Options};
 
 /// What is free to be almost anything.
@@ -50,10 +51,16 @@ fn is_better(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
 }
 
 /// Whether another opinion takes the place of the first, in which `id` was doubtful. A clock that runs apart is one thing; what
-/// takes more than it does to say the same is a patch.
+/// takes more than it does to say the same is a patch. And a map that goes by another name, which was named beside it, is the same.
 fn wins(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
     let patches = id == CLOCK && other.findings.len() > first.findings.len();
-    is_better(id, other, first) && !patches
+    let renamed = |finding: &FindingReport| {
+        let twin = twin(id);
+        finding.id == id && finding.indistinguishable_from.iter().any(|rival| Some(rival.id.as_str()) == twin)
+    };
+    let same = first.findings.iter().any(renamed)
+        && other.findings.iter().any(|finding| Some(finding.id.as_str()) == twin(id));
+    is_better(id, other, first) && !patches && !same
 }
 
 /// The first opinion, or one without what is doubtful in it where that is better; `look` looks with other options.

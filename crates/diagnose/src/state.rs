@@ -199,7 +199,13 @@ impl<'a> State<'a> {
             let all = || function.values.iter().flat_map(|(values, sds)| values.iter().zip(sds.iter()));
             let reach = all().fold(f64::NEG_INFINITY, |most, (value, _)| most.max(*value))
                 - all().fold(f64::INFINITY, |least, (value, _)| least.min(*value));
-            let slack = if self.cause(&part.trial).by_run { SLACK_BY_RUN } else { SLACK };
+            let by_run = self.cause(&part.trial).by_run;
+            // Whatever they share, runs differ by no more than there is room for.
+            let known = SIGMAS * all().map(|(_, sd)| *sd).fold(0.0, f64::max);
+            if by_run && reach > term.high - term.low + known {
+                return false;
+            }
+            let slack = if by_run { SLACK_BY_RUN } else { SLACK };
             let beyond = all().filter(|(value, sd)| {
                 let (value, known) = (even + **value, SIGMAS * **sd + slack * reach);
                 value + known < term.low || value - known > term.high

@@ -497,8 +497,7 @@ fn measured(
     }
     let also = settings.inputs.clone().unwrap_or_else(|| inputs_of(&trace, drive));
     let period_s = trace.period_s();
-    let usual_s = (SMOOTHING_SAMPLES * period_s).min(LONGEST_SMOOTHING_S);
-    let smoothing_s = settings.smoothing_s.unwrap_or(usual_s.max(LEAST_SMOOTHING_SAMPLES * period_s));
+    let smoothing_s = settings.smoothing_s.unwrap_or_else(|| smoothed_s(period_s));
     let forward = drive != Drive::Speed && drive != Drive::Coast;
     let window_s = settings.window_s.or((forward && trace.duration_s() > LONG_S).then_some(WINDOW_S));
     let mut known = Vec::new();
@@ -606,6 +605,11 @@ fn signals(drive: Drive) -> &'static [&'static str] {
     }
 }
 
+/// Half width of the local fit of a recorded speed [s] by the time between its samples, where the scenario does not say.
+fn smoothed_s(period_s: f64) -> f64 {
+    (SMOOTHING_SAMPLES * period_s).min(LONGEST_SMOOTHING_S).max(LEAST_SMOOTHING_SAMPLES * period_s)
+}
+
 /// Those that the model's driveline shows at all.
 fn predicted(signals: Vec<String>, model: &Model, trace: &Trace) -> Vec<String> {
     let how = Replay {
@@ -661,4 +665,21 @@ pub fn rms(run: &Measured, modelled: &Trace, name: &str) -> f64 {
         .map(|value| value * value)
         .collect();
     if squares.is_empty() { f64::NAN } else { mean(&squares).sqrt() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::smoothed_s;
+
+    #[test]
+    fn a_coarse_log_is_smoothed_over_as_few_samples_as_make_a_parabola() {
+        let told = [(0.02, 0.1), (0.1, 0.5), (0.5, 1.5), (1.0, 2.0), (2.0, 4.0)];
+        for (period_s, half_s) in told {
+            assert!(
+                (smoothed_s(period_s) - half_s).abs() < 1e-12,
+                "{period_s} s: {} s",
+                smoothed_s(period_s)
+            );
+        }
+    }
 }

@@ -54,13 +54,16 @@ fn is_better(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
 /// takes more than it does to say the same is a patch. And a map that goes by another name, which was named beside it, is the same.
 fn wins(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
     let patches = id == CLOCK && other.findings.len() > first.findings.len();
-    let renamed = |finding: &FindingReport| {
-        let twin = twin(id);
-        finding.id == id && finding.indistinguishable_from.iter().any(|rival| Some(rival.id.as_str()) == twin)
+    is_better(id, other, first) && !patches && !is_renamed(id, &other.findings, &first.findings)
+}
+
+/// Whether others found by its other name what was found first, and could not be told from that.
+fn is_renamed(id: &str, others: &[FindingReport], first: &[FindingReport]) -> bool {
+    let Some(twin) = twin(id) else { return false };
+    let named = |finding: &FindingReport| {
+        finding.id == id && finding.indistinguishable_from.iter().any(|rival| rival.id == twin)
     };
-    let same = first.findings.iter().any(renamed)
-        && other.findings.iter().any(|finding| Some(finding.id.as_str()) == twin(id));
-    is_better(id, other, first) && !patches && !same
+    first.iter().any(named) && others.iter().any(|finding| finding.id == twin)
 }
 
 /// The first opinion, or one without what is doubtful in it where that is better; `look` looks with other options.
@@ -80,4 +83,21 @@ pub fn opinion(
         }
     }
     Ok(best)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LEVEL, MAP, is_renamed};
+    use crate::report::FindingKind::Physics;
+    use crate::report::finding;
+
+    #[test]
+    fn a_map_by_its_other_name_is_the_same_map() {
+        let first = [finding(Physics, MAP, Some("grade"))];
+        let slopes = [finding(Physics, "grade", None)];
+        assert!(is_renamed(MAP, &slopes, &first));
+        // What was driven both ways tells the two apart, and a level is no map.
+        assert!(!is_renamed(MAP, &slopes, &[finding(Physics, MAP, None)]));
+        assert!(!is_renamed(MAP, &[finding(Physics, LEVEL, None)], &first));
+    }
 }

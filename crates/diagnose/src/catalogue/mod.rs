@@ -709,3 +709,16 @@ pub fn causes(around: &Around) -> Vec<Cause> {
     sensors(&mut all, around);
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Around, shift_transient};
+
+    #[test]
+    fn ranges_are_shifted_at_speeds_that_were_driven() {
+        let driven = Around { range_m_s: (0.5, 5.0), fastest_m_s: 5.2, ..Around::default() };
+        let shifts = shift_transient(&driven, 1e5, 2);
+        assert!(shifts.possible(&[0.3, 2.0, 4.0]));
+        assert!(!shifts.possible(&[0.3, 2.0, 6.6]));
+    }
+}

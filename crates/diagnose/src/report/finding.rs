@@ -473,11 +473,12 @@ fn experiment(cause: &Cause, cured: &Cured, case: &Case) -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use super::*;
     use crate::report::{FitRuns, RivalReport};
 
-    fn finding(kind: FindingKind, id: &str, rival: Option<&str>) -> FindingReport {
+    /// A finding of some kind, and what it cannot be told from.
+    pub fn finding(kind: FindingKind, id: &str, rival: Option<&str>) -> FindingReport {
         let rival =
             rival.map(|id| RivalReport { id: id.to_owned(), squared_correlation: 1.0, evidence: 9.0 });
         FindingReport {

@@ -32,6 +32,9 @@ pub enum Verdict {
     Unlisted,
 }
 
+#[cfg(test)]
+pub use finding::tests::finding;
+
 /// What a finding is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]

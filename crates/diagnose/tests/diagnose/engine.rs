@@ -397,3 +397,41 @@ fn a_consumer_takes_as_much_beside_slopes_that_let_the_engine_roll() {
     let consumer = said.findings.iter().find(|one| one.id == "auxiliary_power").unwrap();
     assert!((consumer.parameters[0].value / POWER_W - 1.0).abs() < 0.1, "{}", said.answer);
 }
+
+/// Passes with another implement each, one as heavy to pull as the tractor weighs a quarter: no vehicle weighs less than nothing in one
+/// run and many times itself in another.
+#[test]
+fn pulls_that_differ_from_run_to_run_are_no_masses() {
+    const PULLS_N: [f64; 5] = [2000.0, 26_000.0, 9000.0, 30_000.0, 18_000.0];
+    let registry = headland_stock::registry();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "engine_torque_n_m" => value + 8.0 * draws.normal(),
+        _ => value,
+    };
+    let channels = ["speed_m_s", "engine_speed_rad_s", "engine_torque_n_m"];
+    let text = |pull_n: f64| {
+        let effects = format!(
+            "cycle: [Reach(speed_m_s: 4, acceleration_m_s2: 0.3), Hold(for_s: 25), Reach(speed_m_s: 2.5, \
+                               acceleration_m_s2: 0.3), Hold(for_s: 20)], effects: [drawbar_load(force_n: {pull_n:?})],"
+        );
+        let cycle = SCENARIO.find("    cycle: [").unwrap()..SCENARIO.find("    free: [").unwrap();
+        let mut text = SCENARIO.to_owned();
+        text.replace_range(cycle, &effects);
+        text
+    };
+    let one = |run: usize| {
+        let seed = 47 + u64::try_from(run).unwrap();
+        let recording = recording_of_scenario(&text(PULLS_N[run]), &registry, &channels, (seed, &noisy));
+        RecordedRun { path: None, ..recording.runs[run].clone() }
+    };
+    let runs: Vec<RecordedRun> = (0..PULLS_N.len()).map(one).collect();
+    let recording = recording_of_scenario(&text(0.0), &registry, &channels, (47, &noisy));
+    let recording = Recording { runs, ..recording };
+    let found = found_of_scenario(&text(0.0), &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    let [pull] = &said.findings[..] else { panic!("{}", said.answer) };
+    assert_eq!(pull.id, "drawbar_load", "{}", said.answer);
+    assert!(pull.sentence.contains("differs from run to run"), "{}", said.answer);
+    assert!(pull.indistinguishable_from.iter().all(|rival| rival.id != "mass"), "{}", said.answer);
+}

@@ -55,6 +55,12 @@ impl Term {
         self.within(value, value)
     }
 
+    /// Whether it can differ by so much, which is known within so much: whatever runs share, no two of them are farther apart than its
+    /// limits are.
+    pub fn has_room_for(&self, apart: f64, known: f64) -> bool {
+        apart <= self.high - self.low + known
+    }
+
     /// Whether it is held.
     pub fn is_held(&self) -> bool {
         self.low >= self.high
@@ -68,5 +74,18 @@ impl Term {
     /// With other limits.
     pub fn within(self, low: f64, high: f64) -> Self {
         Self { low, high, ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::linear;
+
+    #[test]
+    fn runs_differ_by_no_more_than_limits_are_apart() {
+        let mass = linear("extra_mass_kg", "kg", 600.0).within(-3750.0, 7500.0);
+        assert!(mass.has_room_for(11_000.0, 0.0) && mass.has_room_for(12_000.0, 1500.0));
+        assert!(!mass.has_room_for(36_000.0, 1500.0));
+        assert!(linear("force_n", "N", 1000.0).has_room_for(30_000.0, 0.0));
     }
 }

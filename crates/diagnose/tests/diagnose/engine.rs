@@ -398,8 +398,7 @@ fn a_consumer_takes_as_much_beside_slopes_that_let_the_engine_roll() {
     assert!((consumer.parameters[0].value / POWER_W - 1.0).abs() < 0.1, "{}", said.answer);
 }
 
-/// Passes with another implement each, one as heavy to pull as the tractor weighs a quarter: no vehicle weighs less than nothing in one
-/// run and many times itself in another.
+/// Passes with another implement each, one as heavy to pull as the tractor weighs a quarter, where power alone tells.
 #[test]
 fn pulls_that_differ_from_run_to_run_are_no_masses() {
     const PULLS_N: [f64; 5] = [2000.0, 26_000.0, 9000.0, 30_000.0, 18_000.0];

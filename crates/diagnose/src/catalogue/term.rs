@@ -86,6 +86,6 @@ mod tests {
         let mass = linear("extra_mass_kg", "kg", 600.0).within(-3750.0, 7500.0);
         assert!(mass.has_room_for(11_000.0, 0.0) && mass.has_room_for(12_000.0, 1500.0));
         assert!(!mass.has_room_for(36_000.0, 1500.0));
-        assert!(linear("force_n", "N", 1000.0).has_room_for(30_000.0, 0.0));
+        assert!(linear("force_n", "N", 1000.0).has_room_for(15_000.0, 0.0));
     }
 }

@@ -28,10 +28,23 @@ pub fn sentences(case: &Case, system: &System, pool: &Pool, found: &Found, refin
     let information = whitened.reduced(&system.chunks, &case.fit).matrix;
     let sizes: Vec<f64> = candidates.iter().map(|one| one.size).collect();
     let names: Vec<&str> = candidates.iter().map(|one| one.name.as_str()).collect();
-    let told = |blind: &Blind| {
-        if blind.imitated_by.is_empty() { blind.told(&names) } else { together(blind, &candidates) }
+    let told = |blind: Blind| {
+        let blind = without_slight(blind, &sizes);
+        if blind.imitated_by.is_empty() { blind.told(&names) } else { together(&blind, &candidates) }
     };
-    blind_directions(&information, &sizes).iter().map(told).collect()
+    blind_directions(&information, &sizes).into_iter().map(told).collect()
+}
+
+/// Without what would move by next to nothing of how far it is known to: what only noise hides beside that is hidden by itself.
+fn without_slight(blind: Blind, sizes: &[f64]) -> Blind {
+    /// Of a standard deviation of its prior, for one of the candidate's.
+    const SLIGHT: f64 = 0.05;
+    if blind.exact {
+        return blind;
+    }
+    let size = sizes[blind.candidate];
+    let moves = |(index, share): &(usize, f64)| share.abs() * size >= SLIGHT * sizes[*index];
+    Blind { imitated_by: blind.imitated_by.iter().copied().filter(moves).collect(), ..blind }
 }
 
 fn candidates(case: &Case, pool: &Pool, refined: &Refined) -> Vec<Candidate> {
@@ -108,6 +121,22 @@ pub fn listed(items: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_hardly_moves_is_not_told_beside_what_noise_hides() {
+        // A drag area of a slow vehicle, beside a mass known to 14 kg and a coefficient known to 0.0006.
+        let blind = |exact: bool, mass: f64| Blind {
+            candidate: 0,
+            exact,
+            imitated_by: vec![(1, mass), (2, -1.6e-4)],
+            deviation: 0.2,
+        };
+        let sizes = [0.05, 14.0, 6e-4];
+        let told = |exact: bool, mass: f64| without_slight(blind(exact, mass), &sizes).imitated_by;
+        assert_eq!(told(false, 0.35), []);
+        assert_eq!(told(false, 35.0), [(1, 35.0)]);
+        assert_eq!(told(true, 0.35).len(), 2);
+    }
 
     #[test]
     fn a_direction_is_told_with_what_to_raise_and_what_to_lower() {

@@ -9,7 +9,7 @@ use crate::said::{Said, inputs};
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Shown, effect, lost_drive_n, per_newton};
 use crate::{Case, DiagnoseError, System};
-use headland_calibrate::statistics::median;
+use headland_calibrate::statistics::{mean, median};
 use headland_sim::Inputs;
 use headland_symbolic::{Law, Nuisance, Options, Problem, Rows, SymbolicError, Target, Variable, find};
 
@@ -114,16 +114,10 @@ impl Sought {
     pub fn gains(&self, law: &Law) -> bool {
         /// Of all that the law takes and gives.
         const MOST: f64 = 0.1;
-        if self.target != Target::Share {
-            return false;
-        }
         let (mut gained, mut all) = (0.0, 0.0);
-        for (shares, drive_n) in law.prediction.iter().zip(&self.drive_n) {
-            for (share, drive_n) in shares.iter().zip(drive_n) {
-                let force_n = share * drive_n.abs();
-                gained += (-force_n).max(0.0);
-                all += force_n.abs();
-            }
+        for (_, lost_n) in self.forces_and_losses_n(law) {
+            gained += (-lost_n).max(0.0);
+            all += lost_n.abs();
         }
         gained > MOST * all
     }
@@ -133,24 +127,21 @@ impl Sought {
     pub fn answers_itself(&self, law: &Law) -> bool {
         /// Of what the force rises by.
         const MOST: f64 = 0.5;
-        if self.target != Target::Share {
-            return false;
+        let (forces_n, losses_n): (Vec<f64>, Vec<f64>) = self.forces_and_losses_n(law).unzip();
+        let (force_n, loss_n) = (mean(&forces_n), mean(&losses_n));
+        let (mut square, mut product) = (0.0, 0.0);
+        for (own_n, lost_n) in forces_n.iter().zip(&losses_n) {
+            square += (own_n - force_n).powi(2);
+            product += (own_n - force_n) * (lost_n - loss_n);
         }
-        let pairs = || {
-            let runs = law.prediction.iter().zip(&self.drive_n);
-            runs.flat_map(|(shares, drive_n)| shares.iter().zip(drive_n)).map(|(share, drive_n)| {
-                let force_n = drive_n.abs();
-                (force_n, share * force_n)
-            })
-        };
-        let count = pairs().count().max(1) as f64;
-        let (force_n, lost_n) = pairs()
-            .fold((0.0, 0.0), |(force_n, lost_n), pair| (force_n + pair.0 / count, lost_n + pair.1 / count));
-        let (square, product) = pairs().fold((0.0, 0.0), |(square, product), pair| {
-            let apart_n = pair.0 - force_n;
-            (square + apart_n * apart_n, product + apart_n * (pair.1 - lost_n))
-        });
         product > MOST * square
+    }
+
+    /// The size of the drive's force and what a law says is lost of it, sample by sample [N]; none where no share is sought.
+    fn forces_and_losses_n<'a>(&'a self, law: &'a Law) -> impl Iterator<Item = (f64, f64)> + 'a {
+        let runs = law.prediction.iter().zip(&self.drive_n).filter(|_| self.target == Target::Share);
+        let pairs = runs.flat_map(|(shares, drive_n)| shares.iter().zip(drive_n));
+        pairs.map(|(share, drive_n)| (drive_n.abs(), share * drive_n.abs()))
     }
 
     /// What may stand in the formula. What is lost on the way of a force is no matter of places or times; turns load the gears

@@ -200,8 +200,8 @@ impl<'a> State<'a> {
             let reach = all().fold(f64::NEG_INFINITY, |most, (value, _)| most.max(*value))
                 - all().fold(f64::INFINITY, |least, (value, _)| least.min(*value));
             let by_run = self.cause(&part.trial).by_run;
-            let known = SIGMAS * all().map(|(_, sd)| *sd).fold(0.0, f64::max);
-            if by_run && !term.has_room_for(reach, known) {
+            let widest = all().map(|(_, sd)| *sd).fold(0.0, f64::max);
+            if by_run && !term.has_room_for(reach, SIGMAS * widest) {
                 return false;
             }
             let slack = if by_run { SLACK_BY_RUN } else { SLACK };

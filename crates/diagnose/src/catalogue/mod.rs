@@ -344,8 +344,8 @@ fn shift_transient(around: &Around, weight_n: f64, count: usize) -> Cause {
     const WIDEST: f64 = 0.1;
     let width = shape("width_m_s", "m/s").within(0.0, WIDEST * around.range_m_s.1);
     let mut terms = vec![positive("force_n", "N", 0.03 * weight_n), width];
-    let place = shape("speed_m_s", "m/s").within(0.0, around.fastest_m_s);
-    terms.extend(std::iter::repeat_n(place, count));
+    let shift = shape("speed_m_s", "m/s").within(0.0, around.fastest_m_s);
+    terms.extend(std::iter::repeat_n(shift, count));
     let alone = usize::from(count > 1);
     let (from, to) = around.range_m_s;
     let place = |one: u8| from + (to - from) * (f64::from(one) + 0.5) / f64::from(PLACES[alone]);

@@ -392,7 +392,9 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     };
     // Where no force was measured a power is made of the acceleration already.
     let known = || case.runs.iter().all(Recorded::force_is_known);
-    let acceleration = (kind.is_power() && known()).then(|| of(&accelerated_m_s2)).flatten();
+    let acceleration = (kind.is_power() && (known() || std::env::var_os("HX").is_some()))
+        .then(|| of(&accelerated_m_s2))
+        .flatten();
     let engine_speed = channel("engine_speed_rad_s").filter(|runs| kind.is_power() && tells_more(case, runs));
     let slope = Some(case.nominal.iter().map(|said| said.sin_slope.clone()).collect());
     let offered: [Offered; 14] = [

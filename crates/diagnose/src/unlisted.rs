@@ -327,9 +327,11 @@ fn is_map(law: &Law, target: Target, placed: bool) -> bool {
     const WAVE: &str = "sin";
     const FADES: &str = "exp(-x / ";
     const PULSE: &str = " - level";
-    let drawn: &[&str] = if target == Target::Power { &["x", "t"] } else { &["x"] };
-    let only =
-        |term: &[&str]| drawn.iter().any(|name| !term.is_empty() && term.iter().all(|own| own == name));
+    // In a run that goes once along its way both say where it is.
+    let only = |term: &[&str]| {
+        term.iter().all(|own| ["x", "t"].contains(own))
+            && (term.contains(&"x") || target == Target::Power && term.contains(&"t"))
+    };
     let terms = law.variables_of_terms();
     let patches = law.text.contains(PULSE) && terms.iter().any(|term| term.iter().all(|own| *own == "x"));
     let fades = !placed && law.text.contains(FADES);

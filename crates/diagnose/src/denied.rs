@@ -2,13 +2,13 @@
 //! deny because they do not show it. Drag in neutral is a level of rolling resistance where all fitted runs coast, and no drag of the
 //! run that was driven.
 
-use crate::balance::Kind;
 use crate::catalogue::{Class, Form};
 use crate::events::Event;
+use crate::prove::Measure;
+use crate::proven::{Proven, RISES};
 use crate::search::{Found, Rival};
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Trial};
-use crate::withdraw::{Proven, RISES};
 use crate::{Case, DiagnoseError, System};
 
 /// What was found with a rival in the place of one cause, the likeliest that the telling runs held out do not deny.
@@ -18,7 +18,7 @@ pub fn instead(
     pool: &mut Pool,
     best: &Proven,
     place: usize,
-    (events, by, telling): (&[Event], Option<Kind>, &[bool]),
+    (events, by, telling): (&[Event], Option<&Measure>, &[bool]),
 ) -> Result<Option<Proven>, DiagnoseError> {
     /// A rival needs so many times what the best of all trials brings by chance: it is chosen after the fact.
     const SURELY: f64 = 2.0;

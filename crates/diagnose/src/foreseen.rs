@@ -5,10 +5,10 @@
 
 use crate::events::Event;
 use crate::faults::Fault;
+use crate::proven::Proven;
 use crate::search::{Found, worth};
 use crate::state::{Stand, State};
 use crate::trial::Pool;
-use crate::withdraw::Proven;
 use crate::{Case, DiagnoseError, System};
 
 /// Error over the noise of the sensor above which something is missing, whatever the recordings ask for.

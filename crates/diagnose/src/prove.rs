@@ -3,6 +3,7 @@
 use crate::balance::{Kind, System, change};
 use crate::catalogue::{Class, Form};
 use crate::events::Event;
+use crate::forward::{speed_noise, speeds, windows_s};
 use crate::gram::Column;
 use crate::recorded::Recorded;
 use crate::refine::{Cured, Refined, said_with_all};
@@ -12,8 +13,6 @@ use crate::trial::for_run;
 use crate::voltage::{drop_v, lost_w};
 use crate::{Case, DiagnoseError};
 use headland_scenario::Scenario;
-use headland_sim::{Replay, replay};
-use rayon::prelude::*;
 
 /// What an effect did along one run.
 #[derive(Clone, Debug)]
@@ -67,18 +66,36 @@ pub struct Proof {
     pub scenarios: Vec<(Vec<usize>, String)>,
 }
 
-/// Makes the proof, by the signal of a balance: that of what was found first, where nobody says otherwise.
+/// By what a proof is told.
+#[derive(Clone, Debug)]
+pub struct Measure {
+    /// The balance whose signal it is.
+    pub kind: Kind,
+    /// Windows that a run is driven forward in, run by run [s]; none of one that is driven as a whole.
+    pub windows_s: Vec<Option<f64>>,
+}
+
+impl Measure {
+    /// That of what was found first.
+    pub fn of(case: &Case, system: &System, refined: &Refined) -> Result<Self, DiagnoseError> {
+        let kind = told_by(system, refined);
+        let windows_s = match kind {
+            Kind::Motion => windows_s(case, &corrected_by(case, refined)?, refined)?,
+            _ => vec![None; case.runs.len()],
+        };
+        Ok(Self { kind, windows_s })
+    }
+}
+
+/// Makes the proof.
 pub fn prove(
     case: &Case,
     system: &System,
     refined: &Refined,
-    by: Option<Kind>,
+    measure: &Measure,
 ) -> Result<Proof, DiagnoseError> {
     case.step("proving")?;
-    let mut runs = case.raw.clone();
-    for (id, value) in refined.artefacts() {
-        runs = corrected(&runs, id, value)?;
-    }
+    let runs = corrected_by(case, refined)?;
     let effects = refined
         .causes
         .iter()
@@ -87,10 +104,10 @@ pub fn prove(
     // What a run tells of itself is no proof on it: errors are those with what the fitted runs told.
     let told = refined.causes.iter().map(|cured| reconstruct(case, system, cured, refined));
     let told = told.collect::<Result<Vec<_>, _>>()?;
-    let mut kind = by.unwrap_or_else(|| told_by(system, refined));
+    let mut kind = measure.kind;
     let mut signal = None;
     if kind == Kind::Motion {
-        let errors = speeds(case, &runs, refined)?;
+        let errors = speeds(case, &runs, refined, &measure.windows_s)?;
         let other = system.kinds.iter().find(|other| **other != Kind::Motion);
         match other {
             // Where no stretch can be driven forward, another balance tells.
@@ -117,6 +134,15 @@ pub fn prove(
     })
 }
 
+/// The recordings without the faults of sensors that were found.
+fn corrected_by(case: &Case, refined: &Refined) -> Result<Vec<Recorded>, DiagnoseError> {
+    let mut runs = case.raw.clone();
+    for (id, value) in refined.artefacts() {
+        runs = corrected(&runs, id, value)?;
+    }
+    Ok(runs)
+}
+
 /// The improved scenario of every run, each text once; of the first one alone where nothing belongs to a path or to a run.
 fn scenarios(case: &Case, refined: &Refined) -> Result<Vec<(Vec<usize>, String)>, DiagnoseError> {
     let count = if by_path(refined) { case.runs.len() } else { 1 };
@@ -137,7 +163,7 @@ pub fn by_path(refined: &Refined) -> bool {
 }
 
 /// The balance whose signal tells before and after: that of what was found first, and else that of motion.
-pub fn told_by(system: &System, refined: &Refined) -> Kind {
+fn told_by(system: &System, refined: &Refined) -> Kind {
     let found = refined.causes.first().map(|cured| system.kinds[cured.accepted.balance]);
     let motion = system.has(Kind::Motion).then_some(Kind::Motion);
     found.or(motion).or(system.kinds.first().copied()).unwrap_or(Kind::Motion)
@@ -350,62 +376,6 @@ fn sensor_error(case: &Case, id: &'static str, value: f64) -> Result<Reconstruct
         }
     });
     Ok(Reconstructed { id, unit, runs: runs.collect() })
-}
-
-/// Longest window in which a long run is driven forward [s].
-const WINDOW_S: f64 = 30.0;
-
-/// Errors of the speed, driven forward with the nominal scenario and with what was found.
-fn speeds(case: &Case, runs: &[Recorded], refined: &Refined) -> Result<Vec<Errors>, DiagnoseError> {
-    let rmse = |model: &headland_sim::Model, run: &Recorded, how: &Replay| -> Result<f64, DiagnoseError> {
-        let followed = run.measured.followed();
-        let sound =
-            |index: usize| !followed[index] && case.sound.get(run.number).is_none_or(|sound| sound[index]);
-        let failed = |error| DiagnoseError::Replay { run: run.measured.id.clone(), error };
-        let modelled = replay(model, &run.measured.trace, how).map_err(failed)?.trace;
-        let measured = run.measured.trace.get("speed_m_s").unwrap_or(&[]);
-        let speeds = modelled.get("speed_m_s").unwrap_or(&[]).iter().zip(measured).enumerate();
-        let squares: Vec<f64> = speeds
-            .filter(|(index, _)| sound(*index))
-            .map(|(_, (one, other))| (one - other).powi(2))
-            .filter(|value| value.is_finite())
-            .collect();
-        Ok((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
-    };
-    (0..runs.len())
-        .into_par_iter()
-        .map(|place| {
-            let (before, after) = (&case.raw[place], &runs[place]);
-            let Some(drive) = after.shown_forward() else {
-                return Ok(Errors { before: f64::NAN, after: f64::NAN });
-            };
-            let nominal = case.study.model(&before.measured, &case.study.priors())?;
-            let scenario = improved(case, refined, place)?;
-            let cured = case.study.model_of(&scenario, &after.measured, &refined.values())?;
-            let long = after.measured.trace.duration_s() > 2.0 * WINDOW_S;
-            let window_s = after.measured.how.window_s.or(long.then_some(WINDOW_S));
-            let how = Replay { drive, window_s, ..after.measured.how.clone() };
-            Ok(Errors { before: rmse(&nominal, before, &how)?, after: rmse(&cured, after, &how)? })
-        })
-        .collect()
-}
-
-/// What the description says of the speed sensor, or the scatter about the local fit.
-fn speed_noise(case: &Case) -> f64 {
-    let mut squares = 0.0;
-    let mut count = 0usize;
-    for drive in &case.raw {
-        if let Some(speed) = drive.measured.trace.get("speed_m_s") {
-            for (measured, smooth) in speed.iter().zip(&drive.motion.value) {
-                let error = (measured - smooth).powi(2);
-                if error.is_finite() {
-                    squares += error;
-                    count += 1;
-                }
-            }
-        }
-    }
-    (squares / count.max(1) as f64).sqrt()
 }
 
 /// Errors of the rows of a balance, for signals that are not driven forward.

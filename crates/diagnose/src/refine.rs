@@ -124,6 +124,17 @@ impl Refined {
         self.free.iter().map(|free| free.value).collect()
     }
 
+    /// The free parameter that the rows would have furthest from what was known of it, and by how many standard deviations.
+    pub fn strain(&self, case: &Case) -> Option<(&Free, f64)> {
+        let known = |free: &Free| case.study.parameters.iter().find(|one| one.name == free.name);
+        let of = |free: &'_ Free| {
+            let sd = known(free)?.sd.filter(|sd| *sd > 0.0)?;
+            Some((free.asked - free.prior).abs() / sd)
+        };
+        let told = self.free.iter().filter(|free| case.tells(&free.name));
+        told.filter_map(|free| Some((free, of(free)?))).max_by(|one, other| one.1.total_cmp(&other.1))
+    }
+
     /// Whether all that was found is switched in each run by itself.
     pub fn is_switched_alone(&self) -> bool {
         let switched = |cured: &Cured| cured.cause.is_switched() && cured.takes_its_own_course();
@@ -180,7 +191,7 @@ pub fn refine(
     let pool: &Pool = pool;
     let mut refined = linear(case, pool, found, &beyond);
     let physics: Vec<usize> = (0..refined.causes.len())
-        .filter(|place| refined.causes[*place].cause.form == Form::Parameters)
+        .filter(|place| matches!(refined.causes[*place].cause.form, Form::Parameters | Form::Law))
         .collect();
     // Beside a function the linear estimate stands: it is joint with the function's.
     if refined.causes.iter().any(|cured| cured.function().is_some()) {
@@ -191,8 +202,10 @@ pub fn refine(
     if let Some(found) = &lossless {
         refined = linear(case, pool, found, &beyond);
     }
-    // The constants of a law are what its search made of them.
-    if refined.causes.iter().any(|cured| cured.cause.form == Form::Law) {
+    // The constants of a law are what its search made of them; beside a listed cause, which a sum of columns does not draw as it
+    // acts, it is fitted by its amount.
+    let any = |form: Form| refined.causes.iter().any(|cured| cured.cause.form == form);
+    if any(Form::Law) && !any(Form::Parameters) {
         return Ok(refined);
     }
     let found = lossless.as_ref().unwrap_or(found);

@@ -2,22 +2,19 @@
 
 use crate::balance::Kind;
 use crate::catalogue::{Class, Form};
-use crate::contradiction::withhold;
 use crate::denied::instead;
 use crate::events::Event;
 use crate::faults::Fault;
-use crate::in_doubt;
 use crate::mirror::is_whole;
-use crate::prove::{Errors, Proof, prove, told_by};
-use crate::refine::{Cured, Refined, refine, spells};
+use crate::prove::{Errors, Measure, prove};
+use crate::proven::{Proven, RISES, held_out, is_worse};
+use crate::refine::Cured;
 use crate::search::{Found, Rival, worth};
 use crate::state::{Part, State};
 use crate::trial::Pool;
 use crate::words::each_once;
 use crate::{Case, DiagnoseError, System};
 
-/// An error that rises by less than this share rises by what a few runs are apart from the others.
-pub const RISES: f64 = 0.02;
 /// What leaves less than this share of the error that there is without it is not idle, however good the nominal scenario is.
 const HELPS: f64 = 0.6;
 /// What leaves more than this share of the error that there is without it is not missed.
@@ -28,107 +25,6 @@ const BORNE_OUT: f64 = 0.1;
 /// Growth of ln p that the best of all formulas needs: a law of two terms is one of some ten thousand squared, and its constants are
 /// free. ln 10⁸ and a few for each constant.
 const OF_MANY: f64 = 40.0;
-
-/// What was found, with values and the proof of it.
-pub struct Proven {
-    pub found: Found,
-    pub refined: Refined,
-    /// Why nothing is claimed, where it is not.
-    pub withheld: Option<String>,
-    pub proof: Proof,
-}
-
-impl Proven {
-    pub fn of(
-        case: &Case,
-        system: &System,
-        pool: &mut Pool,
-        found: Found,
-        events: &[Event],
-        by: Option<Kind>,
-    ) -> Result<Self, DiagnoseError> {
-        let mut refined = refine(case, system, pool, &found)?;
-        let bounds: Vec<(f64, f64)> = case.study.parameters.iter().map(|known| known.bounds).collect();
-        in_doubt::widen(&mut refined, &bounds, found.estimate.beta.as_slice());
-        spells(case, system, events, &mut refined);
-        let withheld = withhold(case, &mut refined);
-        let proof = prove(case, system, &refined, by)?;
-        Ok(Self { found, refined, withheld, proof })
-    }
-
-    /// Whether runs held out are worse with this than with another.
-    pub fn is_worse_than(&self, other: &Self) -> bool {
-        let held_out = self.worsened().zip(other.worsened());
-        held_out.is_some_and(|(own, other)| own > (1.0 + RISES) * other)
-    }
-
-    /// Whether all runs, those that were fitted too, are clearly worse with what is claimed than with the nominal scenario: what
-    /// a part of the rows asks for is then something else.
-    fn harms(&self) -> bool {
-        /// Errors that rise by so much are no matter of noise.
-        const CLEARLY: f64 = 1.5;
-        let worse = |errors: &Errors| errors.after > CLEARLY * errors.before;
-        !self.refined.causes.is_empty()
-            && self.withheld.is_none()
-            && worse(&self.proof.fitted)
-            && self.proof.held_out.as_ref().is_some_and(worse)
-    }
-
-    /// Whether all that is claimed is faults of sensors, and runs held out are worse without them.
-    fn only_makes_up_faults(&self) -> bool {
-        let mut claimed = self.refined.causes.iter();
-        !self.refined.causes.is_empty()
-            && self.withheld.is_none()
-            && claimed.all(|cured| cured.cause.class == Class::Artefact)
-            && self.worsened().is_some_and(|ratio| ratio > 1.0 + RISES)
-    }
-
-    /// What became of one of the parts of what was found, where it is still claimed.
-    fn cured(&self, place: usize) -> Option<&Cured> {
-        let columns = &self.found.stand.parts[place].trial.columns;
-        self.refined.causes.iter().find(|cured| cured.accepted.trial.columns == *columns)
-    }
-
-    /// Error on runs held out over that of the nominal scenario, where there are any.
-    fn worsened(&self) -> Option<f64> {
-        self.proof.held_out.and_then(|errors| ratio(&errors))
-    }
-
-    /// The same over some runs alone.
-    pub fn worsened_in(&self, telling: &[bool]) -> Option<f64> {
-        Errors::over(&self.proof.each, telling).and_then(|errors| ratio(&errors))
-    }
-
-    /// The runs held out that tell whether it is right: a map says nothing of places where no fitted run was, nor what each run switches
-    /// of any other.
-    fn telling(&self, case: &Case, system: &System, pool: &Pool) -> Vec<bool> {
-        /// A run along which maps are known for less than this share tells nothing of them.
-        const KNOWN: f64 = 0.6;
-        let state = State { case, system, pool, fit: &case.fit };
-        let parts: Vec<Part> =
-            self.found.stand.parts.iter().filter(|part| part.spread.is_some()).cloned().collect();
-        let foretells = !self.refined.is_switched_alone();
-        held_out(case)
-            .zip(state.shares_known(&parts))
-            .map(|(held_out, known)| held_out && known > KNOWN && foretells)
-            .collect()
-    }
-}
-
-/// Which runs are held out and may forbid a claim.
-fn held_out(case: &Case) -> impl Iterator<Item = bool> {
-    case.fit.iter().zip(&case.bears).map(|(fit, bears)| !fit && *bears)
-}
-
-/// Whether errors of the same runs are larger with one set than with another.
-fn is_worse(with: &Errors, without: &Errors) -> bool {
-    with.after > (1.0 + RISES) * without.after
-}
-
-/// Error with what was found over that of the nominal scenario.
-fn ratio(errors: &Errors) -> Option<f64> {
-    Some(errors.after / errors.before).filter(|ratio| ratio.is_finite())
-}
 
 /// Values and proof of what was found; causes with which runs held out are worse than with the nominal scenario are taken
 /// back, the one first that does most harm. Where a sensor is at fault by what it shows itself, that is what is told.
@@ -144,7 +40,8 @@ pub fn proven(
     // One signal tells of all of them.
     let mut withdrawn = false;
     let fitted = best.proof.fitted;
-    let by = Some(told_by(system, &best.refined));
+    let measure = best.measure.clone();
+    let by = Some(&measure);
     let telling = best.telling(case, system, pool);
     while let Some(worsened) = best.worsened_in(&telling).filter(|ratio| *ratio > 1.0 + RISES) {
         let mut least: Option<(f64, usize, Proven)> = None;
@@ -195,12 +92,12 @@ pub fn proven(
         let claimed: Vec<&str> = best.refined.causes.iter().map(|cured| cured.cause.words).collect();
         best.withheld = Some(harmful(claimed));
         best.refined.learn_nothing(case);
-        best.proof = prove(case, system, &best.refined, by)?;
+        best.proof = prove(case, system, &best.refined, &measure)?;
     }
     if best.only_makes_up_faults() {
         best.withheld = Some(nothing_left(best.refined.causes.iter().map(|cured| cured.cause.words)));
         best.refined.learn_nothing(case);
-        best.proof = prove(case, system, &best.refined, by)?;
+        best.proof = prove(case, system, &best.refined, &measure)?;
     }
     // What made not even the fitted runs better is nothing that anybody would miss.
     let helped = fitted.after <= (1.0 - RISES) * best.proof.fitted.after;
@@ -233,8 +130,7 @@ pub fn or_listed(
         return Ok(proven);
     }
     // One signal tells of both.
-    let by = Some(told_by(system, &other.refined));
-    let errors = |one: &Proven| prove(case, system, &one.refined, by).map(|proof| proof.held_out);
+    let errors = |one: &Proven| prove(case, system, &one.refined, &other.measure).map(|proof| proof.held_out);
     let worse = errors(&other)?.zip(errors(&proven)?).is_some_and(|(own, others)| is_worse(&own, &others));
     let poorer = !proven.refined.causes.is_empty() && worth(&other.found.stand) < worth(&proven.found.stand);
     Ok(if worse || poorer { proven } else { other })
@@ -249,7 +145,7 @@ fn without_idle(
     system: &System,
     pool: &mut Pool,
     best: &Proven,
-    (events, by): (&[Event], Option<Kind>),
+    (events, by): (&[Event], Option<&Measure>),
     place: usize,
 ) -> Result<Option<Proven>, DiagnoseError> {
     let trial = &best.found.stand.parts[place].trial;
@@ -276,8 +172,9 @@ fn without_idle(
     if alone {
         telling = held_out(case).collect();
     }
+    let measure = Measure { kind, ..best.measure.clone() };
     let errors = |one: &Proven| {
-        prove(case, system, &one.refined, Some(kind)).map(|proof| Errors::over(&proof.each, &telling))
+        prove(case, system, &one.refined, &measure).map(|proof| Errors::over(&proof.each, &telling))
     };
     let (with, without) = (errors(best)?, errors(&lesser)?);
     if alone {
@@ -339,7 +236,7 @@ fn without_nothing(
     system: &System,
     pool: &mut Pool,
     best: &Proven,
-    (events, by): (&[Event], Option<Kind>),
+    (events, by): (&[Event], Option<&Measure>),
 ) -> Result<Option<Proven>, DiagnoseError> {
     let mut lesser: Option<Proven> = None;
     'asked: loop {
@@ -366,9 +263,14 @@ fn without_nothing(
             // Where it is next to nothing all else may stay as it is; where it is not, the rest is fitted once more.
             let mut refined = own.refined.clone();
             refined.causes.retain(|other| other.accepted.trial.columns != *columns);
-            let proof = prove(case, system, &refined, by)?;
-            let as_it_is = Proven { found: found.clone(), refined, withheld: own.withheld.clone(), proof };
-            let able = |one: &Proven| one.proof.fitted.after <= (1.0 + RISES) * best.proof.fitted.after;
+            let measure = by.unwrap_or(&best.measure).clone();
+            let proof = prove(case, system, &refined, &measure)?;
+            let withheld = own.withheld.clone();
+            let as_it_is = Proven { found: found.clone(), refined, withheld, proof, measure };
+            let able = |one: &Proven| {
+                let worse = one.proof.fitted.after > (1.0 + RISES) * best.proof.fitted.after;
+                !worse && !one.strains_more_than(best, case)
+            };
             if able(&as_it_is) {
                 lesser = Some(as_it_is);
                 continue 'asked;

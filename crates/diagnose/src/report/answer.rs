@@ -10,7 +10,7 @@ use crate::events::Event;
 use crate::experiment::Proposals;
 use crate::faults::Fault;
 use crate::map::map;
-use crate::prove::{Errors, Proof, prove};
+use crate::prove::{Errors, Measure, Proof, prove};
 use crate::refine::{Cured, Free, HALF_95, Refined};
 use crate::search::Found;
 use crate::{Case, DiagnoseError, System, words};
@@ -45,7 +45,7 @@ pub fn report(
         findings.extend(beside.faults.iter().map(|fault| faulty(fault, system)));
     }
     let fit = fit(case, system, Some(found), proof);
-    let strain = strain(case, refined);
+    let strain = refined.strain(case);
     let own = |cured: &Cured| cured.cause.class != Class::Artefact && cured.may_be_none();
     let slight = refined.causes.iter().any(own);
     let courses = refined.is_switched_alone();
@@ -127,7 +127,9 @@ pub fn inconclusive(
     });
     let refined = Refined { causes: Vec::new(), free: free.collect(), null_space: Vec::new() };
     // A recording that cannot even drive the model is shown as it is.
-    let proof = prove(case, system, &refined, None).unwrap_or_else(|_| Proof {
+    let proof =
+        Measure::of(case, system, &refined).and_then(|measure| prove(case, system, &refined, &measure));
+    let proof = proof.unwrap_or_else(|_| Proof {
         signal: "speed_m_s",
         fitted: Errors { before: f64::NAN, after: f64::NAN },
         held_out: None,
@@ -181,16 +183,6 @@ fn told_by_itself(case: &Case, refined: &Refined, events: &[Event]) -> words::Ow
 /// Whether anything that was found is what each run tells of itself alone: a function of time, or spells.
 fn timed(refined: &Refined) -> bool {
     refined.causes.iter().any(|cured| cured.in_single_runs() || cured.takes_its_own_course())
-}
-
-/// The free parameter that the rows would have furthest from what was known of it, and by how many standard deviations.
-fn strain<'a>(case: &Case, refined: &'a Refined) -> Option<(&'a Free, f64)> {
-    let of = |free: &'a Free| {
-        let sd = case.study.parameters.iter().find(|one| one.name == free.name)?.sd?;
-        (sd > 0.0).then(|| (free, (free.asked - free.prior).abs() / sd))
-    };
-    let told = refined.free.iter().filter(|free| case.tells(&free.name));
-    told.filter_map(of).max_by(|one, other| one.1.total_cmp(&other.1))
 }
 
 fn ids(case: &Case, wanted: bool) -> Vec<String> {

@@ -3,12 +3,15 @@
 //! says nothing of forces and consumers. Nor does it where the force was measured at wheels that brakes hold as well. And where the
 //! vehicle's engine cut its fuel the model's may burn some, on a slope that the scenario does not know: the fuel says no more there
 //! than that the wheels drove the engine, however hard they did. A run that drove up there tells how steep it is.
+//!
+//! An engine that idles while the vehicle slows down has nothing to do with its wheels: it is out of gear, or the driver brakes. What
+//! the motion asks for there, and with it every gust and every hump, is none of its fuel.
 
 use crate::Case;
 use crate::faults::SLOWEST_M_S;
 use crate::recorded::Recorded;
 use crate::said::Said;
-use headland_calibrate::statistics::median;
+use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
 use std::collections::BTreeSet;
 
 /// Share of the fuel that an engine takes elsewhere: one that takes more than this has not cut it off.
@@ -28,14 +31,46 @@ pub fn overruns(run: &Recorded, said: &Said) -> Vec<bool> {
     let brake = switch.is_some();
     let measured = run.measured.trace.get("fuel_rate_kg_s");
     let burns = measured.is_some_and(|measured| goes_on_to_burn(measured, modelled));
+    let idles = idles(run);
     let of = |(sample, modelled): (usize, &f64)| {
         let force_n = run.force_n.as_ref().map_or(f64::NAN, |force_n| force_n[sample]);
         let cut = *modelled <= 0.0;
         let held_back = run.engine_w.as_ref().is_some_and(|power_w| power_w[sample] < 0.0) && force_n < 0.0;
         let may_brake = switch.is_none_or(|switch| switch[sample] >= 0.5 || switch[sample].is_nan());
-        cut && !force_n.is_finite() && !brake || burns && (cut || force_n < 0.0) || held_back && may_brake
+        let overruns = cut && !force_n.is_finite() && !brake || burns && (cut || force_n < 0.0);
+        overruns || held_back && may_brake || idles[sample]
     };
     modelled.iter().enumerate().map(of).collect()
+}
+
+/// The samples at which an engine idles in a run whose force follows from the motion: its fuel is as low as it gets, for a good part
+/// of the time, and all that time the vehicle slows down. One that rolls at a steady speed with as little works for it.
+fn idles(run: &Recorded) -> Vec<bool> {
+    /// Share of the samples that take less: the noise of a sensor.
+    const LEAST: f64 = 0.05;
+    /// Fuel of an idling engine is the same within this share of it.
+    const SAME: f64 = 0.1;
+    /// Share of the time that it is low, and of that time that the vehicle slows down.
+    const OFTEN: f64 = 0.1;
+    const SLOWS: f64 = 0.8;
+    let none = || vec![false; run.measured.trace.len()];
+    let trace = &run.measured.trace;
+    let Some(fuel_kg_s) = trace.get("fuel_rate_kg_s") else { return none() };
+    if run.force_n.is_some() || trace.get("coasting").is_some() {
+        return none();
+    }
+    let moves = |sample: usize| run.motion.value[sample] > SLOWEST_M_S && fuel_kg_s[sample] > 0.0;
+    let moving: Vec<usize> = (0..trace.len()).filter(|sample| moves(*sample)).collect();
+    let burnt: Vec<f64> = moving.iter().map(|sample| fuel_kg_s[*sample]).collect();
+    let least_kg_s = quantile_of_sorted(&sorted(&burnt), LEAST);
+    let low = |sample: usize| moves(sample) && (fuel_kg_s[sample] / least_kg_s - 1.0).abs() < SAME;
+    let count = moving.iter().filter(|sample| low(**sample)).count() as f64;
+    let slows =
+        moving.iter().filter(|sample| low(**sample) && run.motion.slope[**sample] < 0.0).count() as f64;
+    if count < OFTEN * moving.len() as f64 || slows < SLOWS * count {
+        return none();
+    }
+    (0..trace.len()).map(low).collect()
 }
 
 /// Whether the fuel was not cut off most of the time that the model says so.

@@ -6,12 +6,14 @@
 //! Source: Newton's second law along the path; the threshold is robust, by the median absolute deviation
 //! (Huber and Ronchetti, *Robust Statistics* (2009), chapter 5).
 
-use crate::Case;
 use crate::events::{BRAKED_M_S2, Event, OPEN};
 use crate::places::stretch;
+use crate::prove::improved;
 use crate::recorded::{Recorded, SLOWEST_M_S};
+use crate::refine::Refined;
 use crate::said::Said;
-use headland_calibrate::statistics::{NORMAL_OF_MEDIAN, median, quantile_of_sorted, sorted};
+use crate::{Case, DiagnoseError};
+use headland_calibrate::statistics::{NORMAL_OF_MEDIAN, mean, median, quantile_of_sorted, sorted};
 use headland_units::constants::STANDARD_GRAVITY_M_S2;
 
 /// What is averaged before it is judged [s]: a pedal is not pressed for less.
@@ -99,6 +101,35 @@ pub fn off_the_ground(case: &Case, sound: &[Vec<bool>], events: &[Event]) -> Vec
 }
 
 /// What holds every run back beside the model's resistances [N]; none where no force is known.
+/// Spells that what was found does not explain: one that a cold driveline or a wind makes up, where the nominal scenario knew of
+/// neither, is none.
+pub fn standing(case: &Case, refined: &Refined, events: Vec<Event>) -> Result<Vec<Event>, DiagnoseError> {
+    /// Of its force has to be left beside what was found.
+    const LEFT: f64 = 0.5;
+    let mut standing = Vec::new();
+    for (number, run) in case.runs.iter().enumerate() {
+        let own: Vec<&Event> = events.iter().filter(|event| event.run == number).collect();
+        if own.is_empty() {
+            continue;
+        }
+        let scenario = improved(case, refined, number)?;
+        let said = case.said_of(std::slice::from_ref(run), &scenario, &refined.values())?;
+        let everywhere = vec![true; run.measured.trace.len()];
+        let excess_n = said.first().and_then(|said| excess_n(run, said, &everywhere, Rolling::Taken));
+        let left_n = |event: &Event| {
+            let samples = run.measured.trace.time_s().iter().zip(excess_n.iter().flatten());
+            let inside = samples.filter(|(time_s, left_n)| {
+                (event.from_s..=event.to_s).contains(*time_s) && left_n.is_finite()
+            });
+            mean(&inside.map(|(_, left_n)| *left_n).collect::<Vec<f64>>())
+        };
+        // Where nothing is known of it, it stays what it was.
+        let gone = |event: &Event| left_n(event) < LEFT * event.force_n;
+        standing.extend(own.into_iter().filter(|event| !gone(event)).cloned());
+    }
+    Ok(standing)
+}
+
 fn excesses_n(case: &Case, sound: &[Vec<bool>], rolling: Rolling) -> Vec<Option<Vec<f64>>> {
     let runs = case.runs.iter().zip(&case.nominal).zip(sound);
     runs.map(|((run, said), sound)| excess_n(run, said, sound, rolling)).collect()

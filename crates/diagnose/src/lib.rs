@@ -199,6 +199,7 @@ fn diagnose_once(
     let proven::Proven { found, mut refined, withheld, proof, .. } = proven;
     let next = experiment::propose(&case, &system, &pool, &found, &refined)?;
     refined.null_space.clone_from(&next.null_space);
-    let beside = report::Beside { faults: &faults, events: &events, withheld, next };
+    let remark = losses::remark(&case, &system, &pool, &found);
+    let beside = report::Beside { faults: &faults, events: &events, withheld, next, remark };
     report::report(&case, &system, &found, &refined, &proof, &beside)
 }

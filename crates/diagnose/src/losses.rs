@@ -12,7 +12,10 @@ use crate::gram::Column;
 use crate::recorded::Recorded;
 use crate::rows::Chunk;
 use crate::said::Said;
+use crate::search::Found;
 use crate::sensors::Small;
+use crate::trial::Pool;
+use crate::words::quantity;
 use headland_sim::local_fit;
 use nalgebra::{DMatrix, DVector};
 
@@ -20,6 +23,15 @@ use nalgebra::{DMatrix, DVector};
 pub const SMALL_LOSS: &str = "battery_";
 /// The loss that goes with the square of speed.
 pub const SPEED_SQUARED: &str = "battery_speed_squared";
+/// What each of those goes with that an efficiency does not say.
+const LARGE_WITH: [(&str, &str); 6] = [
+    ("battery_force_squared", "the square of its force"),
+    (SPEED_SQUARED, "the square of speed"),
+    ("battery_force_size", "the size of its force"),
+    ("battery_power_size", "the size of its power"),
+    ("battery_power_speed", "its power and its speed"),
+    ("battery_power_force", "its power and its force"),
+];
 /// A loss that nobody would call wrong, as a share of the drive's power, both as root mean squares.
 const SMALL: f64 = 0.025;
 
@@ -56,6 +68,33 @@ pub fn small_losses(case: &Case, system: &System) -> Vec<Small> {
         of("battery_power_force", &|run| products(run, |force, speed| force * force * speed), None),
     ];
     smalls.into_iter().filter(|small| small.sd.is_finite() && small.sd > 0.0).collect()
+}
+
+/// What is said of the small loss that is furthest beyond what is usual, where one clearly is: it was free, and no cause.
+pub fn remark(case: &Case, system: &System, pool: &Pool, found: &Found) -> Option<String> {
+    /// Times its usual size.
+    const LARGE: f64 = 1.5;
+    /// In its own standard deviations.
+    const SURE: f64 = 4.0;
+    let of = |(small, with): (&'static str, &'static str)| {
+        let (_, column) = pool.small.iter().find(|(id, _)| *id == small)?;
+        let place = found.used.iter().position(|used| used == column)?;
+        let value = found.estimate.beta[place].abs();
+        let times = value / pool.sd[*column];
+        let sure = value > SURE * found.estimate.covariance[(place, place)].sqrt();
+        (sure && times > LARGE).then(|| {
+            let number = system.kinds.iter().position(|kind| *kind == Kind::Battery);
+            let squares = system.mean_squares(&pool.columns[*column], &case.fit);
+            (times, with, value * number.map_or(0.0, |number| squares[number]).sqrt())
+        })
+    };
+    let all = LARGE_WITH.into_iter().filter_map(of);
+    let (times, with, power_w) = all.max_by(|one, other| one.0.total_cmp(&other.0))?;
+    Some(format!(
+        "Losses of the electric drive beyond its efficiencies were free throughout, and are no cause: the one that goes with {with} \
+         takes {} in the root mean square, {times:.1} times what is usual.",
+        quantity(power_w, "W")
+    ))
 }
 
 /// A power that is made of recorded motion changes at once; what is measured of it follows as fast as engine, pump and

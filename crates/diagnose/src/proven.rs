@@ -41,28 +41,6 @@ impl Proven {
         let withheld = withhold(case, &mut refined);
         let measure = by.map_or_else(|| Measure::of(case, system, &refined), |own| Ok(own.clone()))?;
         let proof = prove(case, system, &refined, &measure)?;
-        if std::env::var_os("DBG").is_some() {
-            let names: Vec<String> = refined
-                .causes
-                .iter()
-                .map(|cured| {
-                    format!(
-                        "{}{} {:?}",
-                        cured.cause.id,
-                        cured
-                            .cause
-                            .law
-                            .as_ref()
-                            .map_or(String::new(), |law| law.text.clone() + &law.constants_text),
-                        cured.values
-                    )
-                })
-                .collect();
-            eprintln!(
-                "PROVEN {names:?} {} fitted {:?} held {:?} each {:.3?} withheld {withheld:?} windows {:?}",
-                proof.signal, proof.fitted, proof.held_out, proof.each, measure.windows_s
-            );
-        }
         Ok(Self { found, refined, withheld, proof, measure })
     }
 

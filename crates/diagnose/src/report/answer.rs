@@ -24,6 +24,8 @@ pub struct Beside<'a> {
     pub events: &'a [Event],
     /// Why nothing is claimed, where it is not.
     pub withheld: Option<String>,
+    /// What is said of what was free beside it.
+    pub remark: Option<String>,
     /// What to drive next.
     pub next: Proposals,
 }
@@ -56,6 +58,7 @@ pub fn report(
         verdict(&findings, &fit, &Doubts { timed: timed(refined), courses, slight, strain })
     };
     notes.extend(remarks(case, &found.unproven));
+    notes.extend(beside.remark.clone());
     notes.extend(words::whose(case, &proof.scenarios));
     let mut null_space = refined.null_space.clone();
     for finding in &findings {

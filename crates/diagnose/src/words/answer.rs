@@ -140,7 +140,7 @@ fn calibrated(told: &Told) -> Option<String> {
     let fitted = &told.fit.fitted;
     let explained = fitted.rmse_after < EXPLAINED * fitted.rmse_before;
     let any = told.findings.iter().any(|finding| finding.share_of_mismatch > 0.0);
-    (any && shares < GREATER && explained)
+    (any && shares < GREATER && explained && strained(told).is_none())
         .then(|| "The greater part is what the free parameters take within their priors.".to_owned())
 }
 

@@ -5,7 +5,7 @@ mod number;
 mod place;
 
 pub use answer::{Own, Told, answer, inconclusive};
-pub use number::{number, plain};
+pub use number::{number, plain, quantity};
 
 use crate::Case;
 use crate::balance::Kind;
@@ -13,7 +13,7 @@ use crate::catalogue::{Cause, Class};
 use crate::level::level;
 use crate::refine::{Cured, HALF_95};
 use crate::report::{ParameterReport, RivalReport};
-use number::{quantity, with_interval};
+use number::with_interval;
 
 /// With a capital at its begin.
 pub fn capital(text: &str) -> String {

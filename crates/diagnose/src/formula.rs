@@ -157,7 +157,7 @@ impl Sought {
         }
         if self.target == Target::Share {
             let (name, unit) = ("F_drive".to_owned(), "N".to_owned());
-            all.push(Variable { name, unit, runs: self.drive_n.clone(), finest: 0.0 });
+            all.push(Variable { name, unit, runs: self.drive_n.clone(), finest: 0.0, by_size: false });
         }
         all
     }
@@ -390,11 +390,10 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
         "x" => BLOCKS * block_s * median(&speeds).abs(),
         _ => 0.0,
     };
-    // Where no force was measured a power is made of the acceleration already.
-    let known = || case.runs.iter().all(Recorded::force_is_known);
-    let acceleration = (kind.is_power() && (known() || std::env::var_os("HX").is_some()))
-        .then(|| of(&accelerated_m_s2))
-        .flatten();
+    let acceleration = kind.is_power().then(|| of(&accelerated_m_s2)).flatten();
+    // Where no force was measured a power is made of the acceleration already: what a mass would take of it, or what comes late,
+    // goes with its sign.
+    let forced = case.runs.iter().all(Recorded::force_is_known);
     let engine_speed = channel("engine_speed_rad_s").filter(|runs| kind.is_power() && tells_more(case, runs));
     let slope = Some(case.nominal.iter().map(|said| said.sin_slope.clone()).collect());
     let offered: [Offered; 14] = [
@@ -420,6 +419,7 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
             unit: unit.to_owned(),
             runs: runs.filter(whole)?,
             finest: finest(name),
+            by_size: name == "acceleration" && !forced,
         })
     };
     offered.into_iter().filter_map(variable).collect()

@@ -103,6 +103,9 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
         }
         Kind::Signed => {
             all.extend([0.5, 1.0, 2.0].map(|p| make(Shape::Power(p), of.round_size(), 0.0)));
+            if of.by_size {
+                return all;
+            }
             if of.negative {
                 all.extend([1.0, 2.0].map(|p| make(Shape::SignedPower(p), of.round_size(), 0.0)));
             }
@@ -147,7 +150,7 @@ fn short(variables: &[Checked], index: usize) -> Vec<Factor> {
         }
         Kind::Signed => {
             all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
-            if of.negative {
+            if of.negative && !of.by_size {
                 all.push(make(Shape::SignedPower(1.0), of.round_size(), 0.0));
                 // One side alone: a wheel that rubs in bends one way.
                 all.extend([Shape::Above(1), Shape::Below(1)].map(|shape| make(shape, of.round_size(), 0.0)));
@@ -258,6 +261,7 @@ mod tests {
                 unit: unit.to_owned(),
                 runs: vec![situations.iter().map(|at| value(name, at)).collect()],
                 finest: 0.0,
+                by_size: false,
             })
             .collect();
         let residual = vec![vec![0.0; situations.len()]];

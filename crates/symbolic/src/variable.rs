@@ -20,6 +20,8 @@ pub struct Variable {
     /// The finest structure that the rows can show, in its unit: shorter waves would only be seen by their beat with the
     /// rows; 0 where the samples themselves are the limit.
     pub finest: f64,
+    /// Whether it enters by its size alone, whichever sign it has: what goes with its sign is somebody else's.
+    pub by_size: bool,
 }
 
 /// How a variable may enter.
@@ -104,6 +106,8 @@ pub(crate) struct Checked<'a> {
     pub high: f64,
     /// Whether any value is negative.
     pub negative: bool,
+    /// Whether it enters by its size alone.
+    pub by_size: bool,
     /// Median of the absolute steps between samples that are not zero.
     pub step: f64,
     /// The finest structure that the rows can show.
@@ -204,7 +208,8 @@ pub(crate) fn check<'a>(
         let negative = variable.runs.iter().flatten().any(|value| *value < 0.0);
         let seen = variable.runs.iter().map(|values| Cow::Borrowed(values.as_slice())).collect();
         let (runs, finest) = (variable.runs.as_slice(), variable.finest);
-        let checked = Checked { known, runs, seen, low, high, negative, step, finest };
+        let by_size = variable.by_size;
+        let checked = Checked { known, runs, seen, low, high, negative, by_size, step, finest };
         if checked.spread() > LEAST_SPREAD * checked.size() {
             all.push(checked);
         }
@@ -222,6 +227,7 @@ mod tests {
             unit: unit.to_owned(),
             runs: vec![vec![0.0, 1.0, 3.0]],
             finest: 0.0,
+            by_size: false,
         }
     }
 

@@ -208,6 +208,7 @@ impl Plant {
             unit: unit.to_owned(),
             runs: self.runs.iter().map(|run| run.iter().map(of).collect()).collect(),
             finest: 0.0,
+            by_size: false,
         };
         vec![
             one("v", "m/s", |at| at.v),

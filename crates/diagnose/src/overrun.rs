@@ -11,7 +11,7 @@ use crate::Case;
 use crate::faults::SLOWEST_M_S;
 use crate::recorded::Recorded;
 use crate::said::Said;
-use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
+use headland_calibrate::statistics::{mean, median, quantile_of_sorted, sorted};
 use std::collections::BTreeSet;
 
 /// Share of the fuel that an engine takes elsewhere: one that takes more than this has not cut it off.
@@ -31,7 +31,7 @@ pub fn overruns(run: &Recorded, said: &Said) -> Vec<bool> {
     let brake = switch.is_some();
     let measured = run.measured.trace.get("fuel_rate_kg_s");
     let burns = measured.is_some_and(|measured| goes_on_to_burn(measured, modelled));
-    let idles = idles(run);
+    let idles = idles(run, modelled);
     let of = |(sample, modelled): (usize, &f64)| {
         let force_n = run.force_n.as_ref().map_or(f64::NAN, |force_n| force_n[sample]);
         let cut = *modelled <= 0.0;
@@ -44,8 +44,9 @@ pub fn overruns(run: &Recorded, said: &Said) -> Vec<bool> {
 }
 
 /// The samples at which an engine idles in a run whose force follows from the motion: its fuel is as low as it gets, for a good part
-/// of the time, and all that time the vehicle slows down. One that rolls at a steady speed with as little works for it.
-fn idles(run: &Recorded) -> Vec<bool> {
+/// of the time, and all that time the vehicle slows down as it does when it rolls freely: the model's engine takes as much. One that
+/// rolls at a steady speed with as little works for it.
+fn idles(run: &Recorded, modelled: &[f64]) -> Vec<bool> {
     /// Share of the samples that take less: the noise of a sensor.
     const LEAST: f64 = 0.05;
     /// Fuel of an idling engine is the same within this share of it.
@@ -53,6 +54,8 @@ fn idles(run: &Recorded) -> Vec<bool> {
     /// Share of the time that it is low, and of that time that the vehicle slows down.
     const OFTEN: f64 = 0.1;
     const SLOWS: f64 = 0.8;
+    /// What the model's engine takes there differs by less than this share.
+    const ALIKE: f64 = 0.25;
     let none = || vec![false; run.measured.trace.len()];
     let trace = &run.measured.trace;
     let Some(fuel_kg_s) = trace.get("fuel_rate_kg_s") else { return none() };
@@ -64,10 +67,14 @@ fn idles(run: &Recorded) -> Vec<bool> {
     let burnt: Vec<f64> = moving.iter().map(|sample| fuel_kg_s[*sample]).collect();
     let least_kg_s = quantile_of_sorted(&sorted(&burnt), LEAST);
     let low = |sample: usize| moves(sample) && (fuel_kg_s[sample] / least_kg_s - 1.0).abs() < SAME;
-    let count = moving.iter().filter(|sample| low(**sample)).count() as f64;
-    let slows =
-        moving.iter().filter(|sample| low(**sample) && run.motion.slope[**sample] < 0.0).count() as f64;
-    if count < OFTEN * moving.len() as f64 || slows < SLOWS * count {
+    let idle: Vec<usize> = moving.iter().copied().filter(|sample| low(*sample)).collect();
+    let slows = idle.iter().filter(|sample| run.motion.slope[**sample] < 0.0).count();
+    let taken = |of: &[f64]| mean(&idle.iter().map(|sample| of[*sample]).collect::<Vec<f64>>());
+    let count = idle.len() as f64;
+    if count < OFTEN * moving.len() as f64
+        || (slows as f64) < SLOWS * count
+        || (taken(modelled) / taken(fuel_kg_s) - 1.0).abs() > ALIKE
+    {
         return none();
     }
     (0..trace.len()).map(low).collect()

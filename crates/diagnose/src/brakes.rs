@@ -103,7 +103,7 @@ pub fn off_the_ground(case: &Case, sound: &[Vec<bool>], events: &[Event]) -> Vec
 /// What holds every run back beside the model's resistances [N]; none where no force is known.
 /// Spells that what was found does not explain: one that a cold driveline or a wind makes up, where the nominal scenario knew of
 /// neither, is none.
-pub fn standing(case: &Case, refined: &Refined, events: Vec<Event>) -> Result<Vec<Event>, DiagnoseError> {
+pub fn standing(case: &Case, refined: &Refined, events: &[Event]) -> Result<Vec<Event>, DiagnoseError> {
     /// Of its force has to be left beside what was found.
     const LEFT: f64 = 0.5;
     let mut standing = Vec::new();

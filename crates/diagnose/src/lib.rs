@@ -192,7 +192,7 @@ fn diagnose_once(
     let (system, mut pool, found) = look.closer(&mut case)?;
     let listed = found.clone();
     let found = unlisted::unlisted(&mut case, &system, &mut pool, found)?;
-    let events = brakes::standing(&case, &refine::plain(&case, &pool, &found), events)?;
+    let events = brakes::standing(&case, &refine::plain(&case, &pool, &found), &events)?;
     let proven = withdraw::proven(&case, &system, &mut pool, found, &events, &faults)?;
     let proven = withdraw::or_listed(&case, &system, &mut pool, (proven, listed), &events, &faults)?;
     let proven = foreseen::foreseen(&case, &system, &mut pool, proven, &events, &faults)?;

@@ -43,10 +43,27 @@ pub fn overruns(run: &Recorded, said: &Said) -> Vec<bool> {
     modelled.iter().enumerate().map(of).collect()
 }
 
-/// The samples at which an engine idles in a run whose force follows from the motion: its fuel is as low as it gets, for a good part
-/// of the time, and all that time the vehicle slows down as it does when it rolls freely: the model's engine takes as much. One that
-/// rolls at a steady speed with as little works for it.
+/// The samples at which an engine idles, in a run whose force follows from the motion.
 fn idles(run: &Recorded, modelled: &[f64]) -> Vec<bool> {
+    let trace = &run.measured.trace;
+    let nowhere = vec![false; trace.len()];
+    let Some(fuel_kg_s) = trace.get("fuel_rate_kg_s") else { return nowhere };
+    if run.force_is_known() || trace.get("coasting").is_some() {
+        return nowhere;
+    }
+    let moves = |sample: usize| run.motion.value[sample] > SLOWEST_M_S && fuel_kg_s[sample] > 0.0;
+    let moving: Vec<usize> = (0..trace.len()).filter(|sample| moves(*sample)).collect();
+    let mut idles = nowhere;
+    for sample in lowest(&moving, &run.motion.slope, fuel_kg_s, modelled) {
+        idles[sample] = true;
+    }
+    idles
+}
+
+/// Those of some samples at which the fuel is as low as it gets, where that is a good part of them, and the vehicle slows down all
+/// that time as it does when it rolls freely: the model's engine takes as much. One that rolls at a steady speed with as little works
+/// for it.
+fn lowest(moving: &[usize], slope_m_s2: &[f64], fuel_kg_s: &[f64], modelled: &[f64]) -> Vec<usize> {
     /// Share of the samples that take less: the noise of a sensor.
     const LEAST: f64 = 0.05;
     /// Fuel of an idling engine is the same within this share of it.
@@ -56,28 +73,17 @@ fn idles(run: &Recorded, modelled: &[f64]) -> Vec<bool> {
     const SLOWS: f64 = 0.8;
     /// What the model's engine takes there differs by less than this share.
     const ALIKE: f64 = 0.25;
-    let none = || vec![false; run.measured.trace.len()];
-    let trace = &run.measured.trace;
-    let Some(fuel_kg_s) = trace.get("fuel_rate_kg_s") else { return none() };
-    if run.force_n.is_some() || trace.get("coasting").is_some() {
-        return none();
-    }
-    let moves = |sample: usize| run.motion.value[sample] > SLOWEST_M_S && fuel_kg_s[sample] > 0.0;
-    let moving: Vec<usize> = (0..trace.len()).filter(|sample| moves(*sample)).collect();
-    let burnt: Vec<f64> = moving.iter().map(|sample| fuel_kg_s[*sample]).collect();
-    let least_kg_s = quantile_of_sorted(&sorted(&burnt), LEAST);
-    let low = |sample: usize| moves(sample) && (fuel_kg_s[sample] / least_kg_s - 1.0).abs() < SAME;
-    let idle: Vec<usize> = moving.iter().copied().filter(|sample| low(*sample)).collect();
-    let slows = idle.iter().filter(|sample| run.motion.slope[**sample] < 0.0).count();
-    let taken = |of: &[f64]| mean(&idle.iter().map(|sample| of[*sample]).collect::<Vec<f64>>());
-    let count = idle.len() as f64;
-    if count < OFTEN * moving.len() as f64
-        || (slows as f64) < SLOWS * count
-        || (taken(modelled) / taken(fuel_kg_s) - 1.0).abs() > ALIKE
-    {
-        return none();
-    }
-    (0..trace.len()).map(low).collect()
+    let of = |samples: &[usize], values: &[f64]| -> Vec<f64> {
+        samples.iter().map(|sample| values[*sample]).collect()
+    };
+    let least_kg_s = quantile_of_sorted(&sorted(&of(moving, fuel_kg_s)), LEAST);
+    let low = |sample: &usize| (fuel_kg_s[*sample] / least_kg_s - 1.0).abs() < SAME;
+    let low: Vec<usize> = moving.iter().copied().filter(low).collect();
+    let slows = low.iter().filter(|sample| slope_m_s2[**sample] < 0.0).count() as f64;
+    let apart = (mean(&of(&low, modelled)) / mean(&of(&low, fuel_kg_s)) - 1.0).abs();
+    let count = low.len() as f64;
+    let idles = count > OFTEN * moving.len() as f64 && slows > SLOWS * count && apart < ALIKE;
+    if idles { low } else { Vec::new() }
 }
 
 /// Whether the fuel was not cut off most of the time that the model says so.
@@ -148,7 +154,28 @@ fn usual_kg_s(measured: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::goes_on_to_burn;
+    use super::{goes_on_to_burn, lowest};
+
+    /// Fuel without force of vehicles that free-wheel when they slow down was told as another rolling resistance by its speed where
+    /// nothing was missing.
+    #[test]
+    fn an_engine_idles_where_its_fuel_is_lowest_while_the_vehicle_rolls_out() {
+        let moving: Vec<usize> = (0..100).collect();
+        let rolls = |sample: usize| sample % 10 < 4;
+        let of = |idle: f64, works: f64| -> Vec<f64> {
+            moving.iter().map(|sample| if rolls(*sample) { idle } else { works }).collect()
+        };
+        let (fuel, slows) = (of(4e-4, 2e-3), of(-0.2, 0.1));
+        let rolled: Vec<usize> = moving.iter().copied().filter(|sample| rolls(*sample)).collect();
+        assert_eq!(lowest(&moving, &slows, &fuel, &of(4.3e-4, 2e-3)), rolled);
+        // A steady speed, brakes or a consumer that the model does not know, and fuel that is low for a moment.
+        assert!(lowest(&moving, &of(0.001, 0.1), &fuel, &fuel).is_empty());
+        assert!(lowest(&moving, &slows, &fuel, &of(1e-4, 2e-3)).is_empty());
+        let mut moment = vec![2e-3; 100];
+        moment[..8].fill(4e-4);
+        assert!(lowest(&moving, &vec![-0.2; 100], &moment, &moment).is_empty());
+        assert!(lowest(&[], &[], &[], &[]).is_empty());
+    }
 
     #[test]
     fn an_engine_that_idles_where_the_model_cuts_its_fuel_burns() {

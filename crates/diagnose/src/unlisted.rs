@@ -781,5 +781,8 @@ mod tests {
         assert!(!told("a1_n * exp(-((t - t1_s) / t2_s)^2)", Target::Force));
         assert!(told("a1_w * exp(-((t - t1_s) / t2_s)^2)", Target::Power));
         assert!(!told("a1_w * (v / v1_m_s)^3", Target::Power));
+        // A patch that is switched on when the first run is there.
+        let switched = "a1_n * exp(-((x - x1_m) / x2_m)^2) * 0.5 * (1 + tanh((t - t1_s) / t2_s))";
+        assert!(told(switched, Target::Force) && told(switched, Target::Power));
     }
 }

@@ -114,6 +114,37 @@ fn a_drag_that_dies_away_with_speed_is_found_as_an_equation_that_runs() {
     is_found_as_a_law(FADING, &recorded(0.069, FADING));
 }
 
+/// A wind is no sum of columns: beside a law its strength was told by half too much, and runs held out denied both.
+#[test]
+fn a_drag_that_dies_away_is_found_beside_a_wind() {
+    let turned = |effects: &str| {
+        let mut text = scenario(0.069, effects, "");
+        for (from, to) in
+            [("0 deg", "20 deg"), ("180 deg", "95 deg"), ("0 deg", "170 deg"), ("180 deg", "260 deg")]
+        {
+            text = text.replacen(&format!("heading_rad\": \"{from}"), &format!("heading_rad\": \"{to}"), 1);
+        }
+        text.replace("sd: 0.01,", "sd: 0.004,")
+    };
+    let hidden = format!("{FADING}, wind(speed_m_s: 10.0, from_rad: 1.3)");
+    let mut recording = recorded_of_scenario(&turned(&hidden), &headland_stock::registry());
+    for run in &mut recording.runs {
+        run.path = None;
+    }
+    let found =
+        found_of_scenario(&turned(""), &recording, &Options::default(), &headland_stock::registry()).unwrap();
+    let said = &found.diagnosis;
+    let claimed: Vec<&str> = said.findings.iter().map(|finding| finding.id.as_str()).collect();
+    assert!(
+        claimed.len() == 2 && claimed.contains(&"unlisted") && claimed.contains(&"wind"),
+        "{}",
+        said.answer
+    );
+    let wind = said.findings.iter().find(|finding| finding.id == "wind").unwrap();
+    let speed_m_s = wind.parameters[0].value;
+    assert!((speed_m_s - 10.0).abs() < 1.5, "{speed_m_s}: {}", said.answer);
+}
+
 /// Between a level and an aerodynamic drag, which say much of it together: it is said, or named beside what is claimed.
 #[test]
 fn a_drag_between_two_listed_ones_is_not_claimed_as_those_in_silence() {

@@ -251,6 +251,30 @@ mod tests {
         Law { text, constants, prediction, terms: 1, ..Law::default() }
     }
 
+    /// What goes with the sign of an acceleration is a mass, or comes late.
+    #[test]
+    fn what_enters_by_its_size_does_so_whichever_sign_it_has() {
+        let runs = vec![vec![-1.0, 0.4, 2.0, -0.3]];
+        let variable = |by_size| Variable {
+            name: "acceleration".to_owned(),
+            unit: "m/s²".to_owned(),
+            runs: runs.clone(),
+            finest: 0.0,
+            by_size,
+        };
+        let values = |by_size: bool| -> Vec<(f64, f64)> {
+            let variables = [variable(by_size)];
+            let checked = crate::variable::check(&variables, &[true], Target::Power).unwrap();
+            let factors = full(&checked, 0);
+            factors
+                .iter()
+                .map(|factor| (factor.value(0.7, &checked[0]).0, factor.value(-0.7, &checked[0]).0))
+                .collect()
+        };
+        assert!(values(true).len() > 2 && values(true).iter().all(|(ahead, back)| ahead == back));
+        assert!(values(false).iter().any(|(ahead, back)| ahead != back));
+    }
+
     /// The effect checks every unit of its formula, so what it reads has units that fit.
     #[test]
     fn every_term_has_units_that_fit_and_runs_with_its_own_numbers() {

@@ -105,8 +105,8 @@ impl Proven {
     /// Whether a free parameter has to be further from what was known of it than it can be, and than it is with another set: it
     /// says then what the other said.
     pub fn strains_more_than(&self, other: &Self, case: &Case) -> bool {
-        /// Nothing that is known is so many standard deviations wrong.
-        const MOST: f64 = 3.5;
+        /// Nothing that is known is so many standard deviations wrong, however much a power that is made of noise bends it.
+        const MOST: f64 = 5.0;
         let of = |one: &Self| one.refined.strain(case).map_or(0.0, |(_, strain)| strain);
         of(self) > MOST.max(of(other))
     }

@@ -202,10 +202,10 @@ pub fn refine(
     if let Some(found) = &lossless {
         refined = linear(case, pool, found, &beyond);
     }
-    // The constants of a law are what its search made of them; beside a listed cause, which a sum of columns does not draw as it
-    // acts, it is fitted by its amount.
-    let any = |form: Form| refined.causes.iter().any(|cured| cured.cause.form == form);
-    if any(Form::Law) && !any(Form::Parameters) {
+    // The constants of a law are what its search made of them; beside a wind, which no sum of columns draws as it blows, it is fitted
+    // by its amount.
+    let law = refined.causes.iter().any(|cured| cured.cause.form == Form::Law);
+    if law && !refined.causes.iter().any(|cured| is_whole(&cured.cause)) {
         return Ok(refined);
     }
     let found = lossless.as_ref().unwrap_or(found);

@@ -18,7 +18,13 @@ const WINDOW_S: f64 = 30.0;
 /// Shortest one [s].
 const SHORTEST_S: f64 = 2.0;
 
-/// The windows that every run is driven forward in with what was found.
+/// The window that a run is driven forward in [s]; none of one that is driven as a whole.
+pub fn usual_window_s(run: &Recorded) -> Option<f64> {
+    let long = run.measured.trace.duration_s() > 2.0 * WINDOW_S;
+    run.measured.how.window_s.or(long.then_some(WINDOW_S))
+}
+
+/// The same of every run with what was found.
 pub fn windows_s(
     case: &Case,
     runs: &[Recorded],
@@ -28,15 +34,13 @@ pub fn windows_s(
     const APART: f64 = 2.0;
     let of_run = |place: usize| {
         let run = &runs[place];
-        let trace = &run.measured.trace;
-        let long = trace.duration_s() > 2.0 * WINDOW_S;
-        let mut window_s = run.measured.how.window_s.or(long.then_some(WINDOW_S));
+        let mut window_s = usual_window_s(run);
         // Nothing that was found makes a force fall.
         if refined.causes.is_empty() {
             return Ok(window_s);
         }
         while parts(case, run, refined, (place, window_s))?.is_some_and(|times| times > APART) {
-            let shorter = 0.5 * window_s.unwrap_or(trace.duration_s());
+            let shorter = 0.5 * window_s.unwrap_or(run.measured.trace.duration_s());
             if shorter < SHORTEST_S {
                 break;
             }

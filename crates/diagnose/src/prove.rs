@@ -3,7 +3,7 @@
 use crate::balance::{Kind, System, change};
 use crate::catalogue::{Class, Form};
 use crate::events::Event;
-use crate::forward::{speed_noise, speeds, windows_s};
+use crate::forward::{speed_noise, speeds, usual_window_s, windows_s};
 use crate::gram::Column;
 use crate::recorded::Recorded;
 use crate::refine::{Cured, Refined, said_with_all};
@@ -81,7 +81,7 @@ impl Measure {
         let kind = told_by(system, refined);
         let windows_s = match kind {
             Kind::Motion => windows_s(case, &corrected_by(case, refined)?, refined)?,
-            _ => vec![None; case.runs.len()],
+            _ => case.runs.iter().map(usual_window_s).collect(),
         };
         Ok(Self { kind, windows_s })
     }

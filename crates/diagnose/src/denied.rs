@@ -18,7 +18,7 @@ pub fn instead(
     pool: &mut Pool,
     best: &Proven,
     place: usize,
-    (events, by, telling): (&[Event], Option<&Measure>, &[bool]),
+    (events, by, telling): (&[Event], &Measure, &[bool]),
 ) -> Result<Option<Proven>, DiagnoseError> {
     /// A rival needs so many times what the best of all trials brings by chance: it is chosen after the fact.
     const SURELY: f64 = 2.0;
@@ -32,7 +32,7 @@ pub fn instead(
     let causes: Vec<usize> = rivals.into_iter().map(|rival| rival.cause).collect();
     for cause in causes {
         let Some(found) = with(case, system, pool, &best.found, (place, cause)) else { continue };
-        let other = Proven::of(case, system, pool, found, events, by)?;
+        let other = Proven::of(case, system, pool, found, events, Some(by))?;
         let stays = other.refined.causes.iter().any(|cured| cured.cause.id == case.causes[cause].id);
         let denied = other.worsened_in(telling).is_none_or(|ratio| ratio > 1.0 + RISES) && !is_near(&other);
         if stays && !denied && other.withheld.is_none() {

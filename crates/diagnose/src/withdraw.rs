@@ -40,14 +40,13 @@ pub fn proven(
     // One signal tells of all of them.
     let mut withdrawn = false;
     let fitted = best.proof.fitted;
-    let measure = best.measure.clone();
-    let by = Some(&measure);
+    let by = &best.measure.clone();
     let telling = best.telling(case, system, pool);
     while let Some(worsened) = best.worsened_in(&telling).filter(|ratio| *ratio > 1.0 + RISES) {
         let mut least: Option<(f64, usize, Proven)> = None;
         for place in 0..best.found.stand.parts.len() {
             let Some(found) = without(case, system, pool, &best.found, place) else { continue };
-            let lesser = Proven::of(case, system, pool, found, events, by)?;
+            let lesser = Proven::of(case, system, pool, found, events, Some(by))?;
             if let Some(ratio) =
                 lesser.worsened_in(&telling).filter(|ratio| *ratio < (1.0 + RISES) * worsened)
                 && least.as_ref().is_none_or(|(other, ..)| ratio < *other)
@@ -67,7 +66,7 @@ pub fn proven(
         if is_slight(case, &best, place)
             && let Some(found) = without(case, system, pool, &best.found, place)
         {
-            let lesser = Proven::of(case, system, pool, found, events, by)?;
+            let lesser = Proven::of(case, system, pool, found, events, Some(by))?;
             withdrawn |= best.proof.fitted.after < MISSED * lesser.proof.fitted.after;
             best = lesser;
             continue;
@@ -76,7 +75,7 @@ pub fn proven(
             && is_tiny(&best, place)
             && let Some(found) = without(case, system, pool, &best.found, place)
         {
-            best = Proven::of(case, system, pool, found, events, by)?;
+            best = Proven::of(case, system, pool, found, events, Some(by))?;
             continue;
         }
         if let Some(lesser) = without_idle(case, system, pool, &best, (events, by), place)? {
@@ -92,12 +91,12 @@ pub fn proven(
         let claimed: Vec<&str> = best.refined.causes.iter().map(|cured| cured.cause.words).collect();
         best.withheld = Some(harmful(claimed));
         best.refined.learn_nothing(case);
-        best.proof = prove(case, system, &best.refined, &measure)?;
+        best.proof = prove(case, system, &best.refined, by)?;
     }
     if best.only_makes_up_faults() {
         best.withheld = Some(nothing_left(best.refined.causes.iter().map(|cured| cured.cause.words)));
         best.refined.learn_nothing(case);
-        best.proof = prove(case, system, &best.refined, &measure)?;
+        best.proof = prove(case, system, &best.refined, by)?;
     }
     // What made not even the fitted runs better is nothing that anybody would miss.
     let helped = fitted.after <= (1.0 - RISES) * best.proof.fitted.after;
@@ -145,7 +144,7 @@ fn without_idle(
     system: &System,
     pool: &mut Pool,
     best: &Proven,
-    (events, by): (&[Event], Option<&Measure>),
+    (events, by): (&[Event], &Measure),
     place: usize,
 ) -> Result<Option<Proven>, DiagnoseError> {
     let trial = &best.found.stand.parts[place].trial;
@@ -164,7 +163,7 @@ fn without_idle(
     let (Some(kind), Some(found)) = (kind, without(case, system, pool, &best.found, place)) else {
         return Ok(None);
     };
-    let lesser = Proven::of(case, system, pool, found, events, by)?;
+    let lesser = Proven::of(case, system, pool, found, events, Some(by))?;
     let mut telling = best.telling(case, system, pool);
     // Where each run drove a path of its own no map foresees another; a formula says something of it all the same, and may not
     // make it worse.
@@ -236,7 +235,7 @@ fn without_nothing(
     system: &System,
     pool: &mut Pool,
     best: &Proven,
-    (events, by): (&[Event], Option<&Measure>),
+    (events, by): (&[Event], &Measure),
 ) -> Result<Option<Proven>, DiagnoseError> {
     let mut lesser: Option<Proven> = None;
     'asked: loop {
@@ -263,19 +262,17 @@ fn without_nothing(
             // Where it is next to nothing all else may stay as it is; where it is not, the rest is fitted once more.
             let mut refined = own.refined.clone();
             refined.causes.retain(|other| other.accepted.trial.columns != *columns);
-            let measure = by.unwrap_or(&best.measure).clone();
-            let proof = prove(case, system, &refined, &measure)?;
-            let withheld = own.withheld.clone();
-            let as_it_is = Proven { found: found.clone(), refined, withheld, proof, measure };
+            let (proof, withheld) = (prove(case, system, &refined, by)?, own.withheld.clone());
+            let as_it_is = Proven { found: found.clone(), refined, withheld, proof, measure: by.clone() };
             let able = |one: &Proven| {
-                let worse = one.proof.fitted.after > (1.0 + RISES) * best.proof.fitted.after;
-                !worse && !one.strains_more_than(best, case)
+                let no_worse = one.proof.fitted.after <= (1.0 + RISES) * best.proof.fitted.after;
+                no_worse && !one.strains_more_than(best, case)
             };
             if able(&as_it_is) {
                 lesser = Some(as_it_is);
                 continue 'asked;
             }
-            let other = Proven::of(case, system, pool, found, events, by)?;
+            let other = Proven::of(case, system, pool, found, events, Some(by))?;
             if able(&other) {
                 lesser = Some(other);
                 continue 'asked;

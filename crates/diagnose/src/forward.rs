@@ -76,7 +76,7 @@ fn parts(
 }
 
 /// The speed that a model makes of what drove a run, sample by sample [m/s].
-fn modelled(model: &Model, run: &Recorded, how: &Replay) -> Result<Vec<f64>, DiagnoseError> {
+pub fn modelled(model: &Model, run: &Recorded, how: &Replay) -> Result<Vec<f64>, DiagnoseError> {
     let failed = |error| DiagnoseError::Replay { run: run.measured.id.clone(), error };
     let trace = replay(model, &run.measured.trace, how).map_err(failed)?.trace;
     Ok(trace.get("speed_m_s").unwrap_or(&[]).to_vec())

@@ -196,7 +196,7 @@ fn diagnose_once(
     let proven = withdraw::proven(&case, &system, &mut pool, found, &events, &faults)?;
     let proven = withdraw::or_listed(&case, &system, &mut pool, (proven, listed), &events, &faults)?;
     let proven = foreseen::foreseen(&case, &system, &mut pool, proven, &events, &faults)?;
-    let proven::Proven { found, mut refined, withheld, proof, .. } = proven;
+    let proven::Proven { found, mut refined, withheld, proof } = proven;
     let next = experiment::propose(&case, &system, &pool, &found, &refined)?;
     refined.null_space.clone_from(&next.null_space);
     let remark = losses::remark(&case, &system, &pool, &found);

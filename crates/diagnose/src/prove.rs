@@ -50,6 +50,8 @@ impl Errors {
 
 /// The proof.
 pub struct Proof {
+    /// By what it is told.
+    pub measure: Measure,
     /// The signal.
     pub signal: &'static str,
     /// Over the runs that were fitted.
@@ -124,6 +126,7 @@ pub fn prove(
         Errors::over(&errors, &chosen.collect::<Vec<_>>())
     };
     Ok(Proof {
+        measure: measure.clone(),
         signal: kind.signal(),
         fitted: over(true).unwrap_or_default(),
         held_out: over(false),

@@ -21,8 +21,6 @@ pub struct Proven {
     /// Why nothing is claimed, where it is not.
     pub withheld: Option<String>,
     pub proof: Proof,
-    /// By what that is told.
-    pub measure: Measure,
 }
 
 impl Proven {
@@ -41,7 +39,7 @@ impl Proven {
         let withheld = withhold(case, &mut refined);
         let measure = by.map_or_else(|| Measure::of(case, system, &refined), |own| Ok(own.clone()))?;
         let proof = prove(case, system, &refined, &measure)?;
-        Ok(Self { found, refined, withheld, proof, measure })
+        Ok(Self { found, refined, withheld, proof })
     }
 
     /// Whether runs held out are worse with this than with another.

@@ -40,7 +40,7 @@ pub fn proven(
     // One signal tells of all of them.
     let mut withdrawn = false;
     let fitted = best.proof.fitted;
-    let by = &best.measure.clone();
+    let by = &best.proof.measure.clone();
     let telling = best.telling(case, system, pool);
     while let Some(worsened) = best.worsened_in(&telling).filter(|ratio| *ratio > 1.0 + RISES) {
         let mut least: Option<(f64, usize, Proven)> = None;
@@ -129,7 +129,8 @@ pub fn or_listed(
         return Ok(proven);
     }
     // One signal tells of both.
-    let errors = |one: &Proven| prove(case, system, &one.refined, &other.measure).map(|proof| proof.held_out);
+    let errors =
+        |one: &Proven| prove(case, system, &one.refined, &other.proof.measure).map(|proof| proof.held_out);
     let worse = errors(&other)?.zip(errors(&proven)?).is_some_and(|(own, others)| is_worse(&own, &others));
     let poorer = !proven.refined.causes.is_empty() && worth(&other.found.stand) < worth(&proven.found.stand);
     Ok(if worse || poorer { proven } else { other })
@@ -171,7 +172,7 @@ fn without_idle(
     if alone {
         telling = held_out(case).collect();
     }
-    let measure = Measure { kind, ..best.measure.clone() };
+    let measure = Measure { kind, ..best.proof.measure.clone() };
     let errors = |one: &Proven| {
         prove(case, system, &one.refined, &measure).map(|proof| Errors::over(&proof.each, &telling))
     };
@@ -263,7 +264,7 @@ fn without_nothing(
             let mut refined = own.refined.clone();
             refined.causes.retain(|other| other.accepted.trial.columns != *columns);
             let (proof, withheld) = (prove(case, system, &refined, by)?, own.withheld.clone());
-            let as_it_is = Proven { found: found.clone(), refined, withheld, proof, measure: by.clone() };
+            let as_it_is = Proven { found: found.clone(), refined, withheld, proof };
             let able = |one: &Proven| {
                 let no_worse = one.proof.fitted.after <= (1.0 + RISES) * best.proof.fitted.after;
                 no_worse && !one.strains_more_than(best, case)

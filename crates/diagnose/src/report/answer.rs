@@ -4,11 +4,13 @@ use super::finding::{Doubts, faulty, findings, verdict};
 use super::series::{corrections, effects, residuals};
 use super::shown::shown;
 use super::{Calibrated, Diagnosed, Diagnosis, Fit, FitRuns, Tried, Verdict, bands};
+use crate::balance::Kind;
 use crate::catalogue::Class;
 use crate::elsewhere::elsewhere;
 use crate::events::Event;
 use crate::experiment::Proposals;
 use crate::faults::Fault;
+use crate::forward::usual_window_s;
 use crate::map::map;
 use crate::prove::{Errors, Measure, Proof, prove};
 use crate::refine::{Cured, Free, HALF_95, Refined};
@@ -133,6 +135,7 @@ pub fn inconclusive(
     let proof =
         Measure::of(case, system, &refined).and_then(|measure| prove(case, system, &refined, &measure));
     let proof = proof.unwrap_or_else(|_| Proof {
+        measure: Measure { kind: Kind::Motion, windows_s: case.runs.iter().map(usual_window_s).collect() },
         signal: "speed_m_s",
         fitted: Errors { before: f64::NAN, after: f64::NAN },
         held_out: None,

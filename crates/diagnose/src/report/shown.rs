@@ -2,19 +2,18 @@
 
 use super::Shown;
 use crate::balance::{FUEL_J_KG, Kind};
+use crate::forward::modelled;
 use crate::prove::{Proof, improved};
 use crate::recorded::Recorded;
 use crate::refine::Refined;
 use crate::search::Found;
 use crate::sensors::corrected;
 use crate::{Case, DiagnoseError, System};
-use headland_sim::{Replay, replay};
+use headland_sim::Replay;
 use rayon::prelude::*;
 
 /// So many runs are shown.
 const SHOWN: usize = 6;
-/// Long runs are driven forward in windows of this length [s].
-const WINDOW_S: f64 = 30.0;
 
 /// The runs that were held out, or the first of those fitted where none was.
 pub fn shown(
@@ -38,7 +37,7 @@ pub fn shown(
             .filter_map(|run| of_rows(case, system, found, proof.signal, (*run, &sound[*run])))
             .collect());
     }
-    let all = chosen.into_par_iter().map(|run| of_speed(case, &sound[run], refined, run));
+    let all = chosen.into_par_iter().map(|run| of_speed(case, &sound[run], refined, (run, proof)));
     Ok(all.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
@@ -46,32 +45,28 @@ fn of_speed(
     case: &Case,
     after: &Recorded,
     refined: &Refined,
-    run: usize,
+    (run, proof): (usize, &Proof),
 ) -> Result<Option<Shown>, DiagnoseError> {
     let before = &case.raw[run];
     let Some(drive) = after.shown_forward() else { return Ok(None) };
-    let long = after.measured.trace.duration_s() > 2.0 * WINDOW_S;
-    let window_s = after.measured.how.window_s.or(long.then_some(WINDOW_S));
-    let speed = |model: &headland_sim::Model, of: &Recorded| -> Result<Vec<f64>, DiagnoseError> {
-        let failed = |error| DiagnoseError::Replay { run: of.measured.id.clone(), error };
-        let how = Replay { drive, window_s, ..of.measured.how.clone() };
-        let modelled = replay(model, &of.measured.trace, &how).map_err(failed)?.trace;
-        Ok(modelled.get("speed_m_s").map(<[f64]>::to_vec).unwrap_or_default())
-    };
+    // As the proof tells it: a picture in other windows would be one of another error.
+    let how =
+        |of: &Recorded| Replay { drive, window_s: proof.measure.windows_s[run], ..of.measured.how.clone() };
     let nominal = case.study.model(&before.measured, &case.study.priors())?;
     let cured = case.study.model_of(&improved(case, refined, run)?, &after.measured, &refined.values())?;
-    let (modelled, cured) = (speed(&nominal, before)?, speed(&cured, after)?);
+    let before_m_s = modelled(&nominal, before, &how(before))?;
+    let after_m_s = modelled(&cured, after, &how(after))?;
     let measured = after.measured.trace.get("speed_m_s").map(<[f64]>::to_vec).unwrap_or_default();
     let time_s = after.measured.trace.time_s().to_vec();
-    let whole = [&modelled, &cured, &measured].iter().all(|values| values.len() == time_s.len());
+    let whole = [&before_m_s, &after_m_s, &measured].iter().all(|values| values.len() == time_s.len());
     Ok(whole.then(|| Shown {
         run: after.measured.id.clone(),
         held_out: !case.fit[run],
         signal: "speed_m_s".to_owned(),
         time_s,
         measured,
-        before: modelled,
-        after: cured,
+        before: before_m_s,
+        after: after_m_s,
     }))
 }
 

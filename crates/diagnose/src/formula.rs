@@ -10,7 +10,7 @@ use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Shown, effect, lost_drive_n, per_newton};
 use crate::{Case, DiagnoseError, System};
 use headland_calibrate::statistics::{mean, median};
-use headland_sim::Inputs;
+use headland_sim::{Inputs, travelled};
 use headland_symbolic::{Law, Nuisance, Options, Problem, Rows, SymbolicError, Target, Variable, find};
 
 /// A wave takes so many blocks of samples.
@@ -361,6 +361,30 @@ fn masses_kg(case: &Case) -> Option<Vec<Vec<f64>>> {
     case.runs.iter().map(of_run).collect()
 }
 
+/// How far every run came since it began, sample by sample, where that does not say where it is as well.
+fn ways_m(case: &Case) -> Option<Vec<Vec<f64>>> {
+    /// A way is something else than the place where it is off a straight line of that by this share of the longest.
+    const APART: f64 = 0.05;
+    let of_run = |run: &Recorded| {
+        let speeds: Vec<f64> = run.motion.value.iter().map(|speed| speed.abs()).collect();
+        travelled(run.measured.trace.time_s(), &speeds)
+    };
+    let ways: Vec<Vec<f64>> = case.runs.iter().map(of_run).collect();
+    let all: Vec<f64> = ways.iter().flatten().copied().collect();
+    let places: Vec<f64> = case.runs.iter().flat_map(|run| run.position_m.iter().copied()).collect();
+    let (way, place) = (mean(&all), mean(&places));
+    let (mut square, mut product) = (0.0, 0.0);
+    for (own, at) in all.iter().zip(&places) {
+        square += (at - place).powi(2);
+        product += (at - place) * (own - way);
+    }
+    let slope = if square > 0.0 { product / square } else { 0.0 };
+    let longest = all.iter().copied().fold(0.0, f64::max);
+    let apart =
+        all.iter().zip(&places).any(|(own, at)| (own - way - slope * (at - place)).abs() > APART * longest);
+    apart.then_some(ways)
+}
+
 /// What of a recorded wind blows against the vehicle, or across it from the right, sample by sample.
 fn wind_m_s(case: &Case, part: fn(f64) -> f64) -> Option<Vec<Vec<f64>>> {
     let of_run = |run: &Recorded| {
@@ -396,11 +420,12 @@ fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     let forced = case.runs.iter().all(Recorded::force_is_known);
     let engine_speed = channel("engine_speed_rad_s").filter(|runs| kind.is_power() && tells_more(case, runs));
     let slope = Some(case.nominal.iter().map(|said| said.sin_slope.clone()).collect());
-    let offered: [Offered; 14] = [
+    let offered: [Offered; 15] = [
         ("v", "m/s", of(&|run| run.motion.value.clone())),
         ("acceleration", "m/s²", acceleration),
         ("engine_speed", "rad/s", engine_speed),
         ("x", "m", of(&|run| run.position_m.clone())),
+        ("way", "m", ways_m(case)),
         ("t", "s", of(&|run| run.measured.trace.time_s().to_vec())),
         ("heading", "rad", channel("heading_rad").filter(|runs| turns(runs))),
         ("kappa", "1/m", channel("curvature_per_m")),

@@ -31,6 +31,12 @@ fn force(text: &str, run: &Trace) -> Vec<f64> {
     let model = scenario.run(scenario.runs.last().unwrap(), &registry).unwrap().model(&registry).unwrap();
     let get = |name: &str| run.get(name).unwrap();
     let (speed, position, coasting) = (get("speed_m_s"), get("position_m"), get("coasting"));
+    // What each remembers, from sample to sample.
+    let mut memories: Vec<Vec<f64>> = model
+        .effects
+        .iter()
+        .map(|effect| effect.plugin.states().iter().map(|state| state.initial).collect())
+        .collect();
     let at = |index: usize| {
         let situation = Situation {
             time_s: run.time_s()[index],
@@ -42,11 +48,17 @@ fn force(text: &str, run: &Trace) -> Vec<f64> {
             coasting: coasting[index] >= 0.5,
             ..Situation::default()
         };
-        let of = |effect: &dyn headland_plugin::Effect| {
-            let action = effect.act(&situation, &[], &mut []);
+        let step_s = run.time_s()[(index + 1).min(run.len() - 1)] - run.time_s()[index];
+        let of = |effect: &dyn headland_plugin::Effect, memory: &mut Vec<f64>| {
+            effect.decide(&situation, memory);
+            let mut rates = vec![0.0; memory.len()];
+            let action = effect.act(&situation, memory, &mut rates);
+            for (state, rate) in memory.iter_mut().zip(rates) {
+                *state += step_s * rate;
+            }
             action.force_n - action.resistance_n
         };
-        model.effects.iter().map(|effect| of(&*effect.plugin)).sum()
+        model.effects.iter().zip(&mut memories).map(|(effect, memory)| of(&*effect.plugin, memory)).sum()
     };
     (0..run.len()).map(at).collect()
 }
@@ -112,6 +124,35 @@ fn a_wave_that_was_driven_one_way_is_not_told_from_slopes() {
 #[test]
 fn a_drag_that_dies_away_with_speed_is_found_as_an_equation_that_runs() {
     is_found_as_a_law(FADING, &recorded(0.069, FADING));
+}
+
+/// A flap that opens at one speed stays open until another is reached: at speeds between, the force is what was passed last.
+#[test]
+fn a_switch_that_latches_is_found_as_an_equation_that_runs() {
+    const FLAP: &str = r#"expression(resistance: "a_n * latched(v, open_m_s, closed_m_s)", constants: {"a_n": 900.0, "open_m_s": 5.2, "closed_m_s": 1.9})"#;
+    let up_and_down = |effects: &str| {
+        let reach = |speed_m_s: f64| {
+            format!("Reach(speed_m_s: {speed_m_s:?}, acceleration_m_s2: 0.5), Hold(for_s: 5),")
+        };
+        let cycle: String = [4.5, 7.5, 3.5, 1.4, 4.0, 2.5].map(reach).concat();
+        scenario(0.069, effects, "").replace("cycle: [", &format!("cycle: [{cycle}"))
+    };
+    let registry = headland_stock::registry();
+    let recording = recorded_of_scenario(&up_and_down(FLAP), &registry);
+    let found = found_of_scenario(&up_and_down(""), &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);
+    let equation = said.findings[0].equation.as_str();
+    let share = reproduced(&found, FLAP, &recording);
+    assert!(share > 0.9 && equation.contains("latched("), "{share} {equation}: {}", said.answer);
+}
+
+/// Mud wears off with the way from wherever a run began, which is no place of the lane.
+#[test]
+fn what_wears_off_with_the_way_is_found_where_places_were_recorded() {
+    const MUD: &str =
+        r#"expression(resistance: "a_n * exp(-way / l_m)", constants: {"a_n": 3000.0, "l_m": 11.0})"#;
+    is_found_as_a_law(MUD, &to_and_fro(recorded(0.069, MUD)));
 }
 
 /// A wind is no sum of columns: beside a law its strength was told by half too much, and runs held out denied both.

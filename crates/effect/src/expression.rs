@@ -3,7 +3,8 @@
 //! R = f(…), F = f(…), λ = f(…), P = f(…)        each a text in the notation of `expression/parser.rs`
 //!
 //! Source: the author of the scenario; empirical. Notation and units: `expression/names.rs` and `expression/units.rs`.
-//! A formula remembers nothing and does not know the force at the wheels, of which a share may be lost. Units are checked
+//! A formula remembers how far the vehicle came since the run began, and whether each of its switches is on; it does not know the force at
+//! the wheels, of which a share may be lost. Units are checked
 //! when it is read: sums and comparisons need one unit, functions pure numbers, and the whole has to come out in newtons or
 //! watts, or as the pure number that a share is.
 //! Where a formula has no finite value the action has none either, nothing is clamped: a force stops the simulation, a
@@ -25,9 +26,9 @@ use crate::series::refuse;
 use constants::Constants;
 use dimension::Dimension;
 use fault::Fault;
-use headland_plugin::{Action, Card, Effect, Plugin, Refusal, Situation, parameter};
+use headland_plugin::{Action, Card, Effect, Plugin, Refusal, Situation, State, parameter};
 use headland_units::parse_unit;
-use names::DRIVE;
+use names::{DRIVE, REMEMBERED};
 use parser::compile;
 use program::Program;
 use serde::Deserialize;
@@ -54,6 +55,9 @@ pub struct Expression {
     follows: bool,
     #[serde(skip)]
     follows_drive: bool,
+    /// Names of what is remembered.
+    #[serde(skip)]
+    memory: Vec<&'static str>,
     #[serde(skip)]
     resistance_n: Option<Program>,
     #[serde(skip)]
@@ -73,12 +77,13 @@ impl Plugin for Expression {
     const CARD: Card = Card {
         name: "expression",
         about: "a force, a loss of the drive or a power as a formula of the situation",
-        equation: "R, F, λ, P = + - * / ^ < <= > >= == != ( ) min max clamp abs sign sqrt pow exp ln log10 sin cos tanh of \
-                   v [m/s] acceleration [m/s²] F_drive [N] engine_speed [rad/s] x [m] t [s] heading [rad] kappa [1/m] slope [1] elevation [m] temperature [°C] oil_temperature [°C] m [kg] \
+        equation: "R, F, λ, P = + - * / ^ < <= > >= == != ( ) min max clamp abs sign sqrt pow exp ln log10 sin cos tanh latched of \
+                   v [m/s] acceleration [m/s²] F_drive [N] engine_speed [rad/s] x [m] way [m] t [s] heading [rad] kappa [1/m] slope [1] elevation [m] temperature [°C] oil_temperature [°C] m [kg] \
                    g [m/s²] N [N] rho [kg/m³] area [m²] coasting [1] braking [1] headwind [m/s] crosswind [m/s] and \
                    constants",
         source: "the author of the scenario; empirical",
-        validity: "units have to fit; comparisons are 1 or 0; slope is the sine, N = m g cos θ the normal load, the cross \
+        validity: "units have to fit (a factor whose unit no name can say is written as quotients: p_w * (F_drive / f_n)^2); comparisons are 1 or 0; latched(u, on, off) is a switch that goes on at one value of u and off at another; way is the distance \
+                   driven since the run began; slope is the sine, N = m g cos θ the normal load, the cross \
                    wind comes from the right; oil_temperature has to be recorded; powers alone may name the acceleration and engine_speed, which forces make, powers and loss_share F_drive, the force of the drive before that loss; a force that is not finite stops the simulation, \
                    such a power leaves the drive without any",
         parameters: &[
@@ -117,11 +122,13 @@ impl Plugin for Expression {
             ("auxiliary_power", &self.auxiliary_power, "W", &mut self.auxiliary_power_w),
             ("shaft_power", &self.shaft_power, "W", &mut self.shaft_power_w),
         ];
+        self.memory.clear();
         let mut given = false;
         for (name, text, unit, program) in formulas {
             let Some(text) = text else { continue };
             given = true;
-            let compiled = compile(text, &constants).map_err(|fault| fault.refusal(name, text))?;
+            let compiled =
+                compile(text, &constants, &mut self.memory).map_err(|fault| fault.refusal(name, text))?;
             let wanted = parse_unit(unit).map_or(Dimension::NONE, |unit| Dimension::of(&unit));
             if compiled.dimension != wanted && !compiled.any_unit {
                 let found = format!("\"{}\" in {}", Fault::quote(text, 0..text.len()), compiled.dimension);
@@ -173,8 +180,26 @@ impl Effect for Expression {
         self.follows_drive
     }
 
-    fn act(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Action {
-        let value = |program: &Option<Program>| program.as_ref().map_or(0.0, |program| program.value(at));
+    fn states(&self) -> Vec<State> {
+        self.memory.iter().map(|name| State { name, initial: 0.0 }).collect()
+    }
+
+    fn decide(&self, at: &Situation, states: &mut [f64]) -> bool {
+        let formulas =
+            [&self.resistance_n, &self.force_n, &self.loss, &self.auxiliary_power_w, &self.shaft_power_w];
+        let mut changed = false;
+        for program in formulas.into_iter().flatten() {
+            changed |= program.switch(at, states);
+        }
+        changed
+    }
+
+    fn act(&self, at: &Situation, states: &[f64], rates: &mut [f64]) -> Action {
+        for (name, rate) in self.memory.iter().zip(rates.iter_mut()) {
+            *rate = if *name == REMEMBERED[0] { at.speed_m_s.abs() } else { 0.0 };
+        }
+        let value =
+            |program: &Option<Program>| program.as_ref().map_or(0.0, |program| program.value(at, states));
         Action {
             resistance_n: value(&self.resistance_n),
             force_n: value(&self.force_n),

@@ -69,6 +69,13 @@ pub trait Effect: Debug + Send + Sync {
         false
     }
 
+    /// Sets what it remembers anew between two steps, as a switch does; whether anything changed. It is asked once at the begin,
+    /// before anything moves.
+    fn decide(&self, at: &Situation, states: &mut [f64]) -> bool {
+        let _ = (at, states);
+        false
+    }
+
     /// Least and greatest force at the wheels [N] that it allows the driveline. A recorded force is beyond its reach, and
     /// so is the force that drove a recorded motion; of that, what it does not allow in braking is left to the brakes.
     fn limits_n(&self, at: &Situation, states: &[f64]) -> (f64, f64) {

@@ -187,7 +187,7 @@ impl<'a> Machine<'a> {
         &self.scratch.actions
     }
 
-    /// The balance where the machine stands, after the driveline has decided what it decides between two steps. The
+    /// The balance where the machine stands, after driveline and effects have decided what they decide between two steps. The
     /// direction of a machine at rest is what the forces make of it.
     pub fn instant(&mut self, control: &impl Control) -> Instant {
         let mut instant = self.as_decided(control);
@@ -213,14 +213,18 @@ impl<'a> Machine<'a> {
             .or_else(|| self.trouble(instant))
     }
 
-    /// Lets the driveline decide; says whether anything changed. Who remembers nothing decides nothing.
+    /// Lets the driveline and the effects decide; says whether anything changed. Who remembers nothing decides nothing.
     pub(crate) fn decide(&mut self, instant: &Instant) -> bool {
-        let own = &self.layout.driveline;
-        !own.is_empty()
-            && self
-                .model
-                .driveline
-                .decide(&instant.demand, &mut self.y[FIRST_STATE + own.start..FIRST_STATE + own.end])
+        let Self { model, layout, y, .. } = self;
+        let own = |range: &std::ops::Range<usize>| FIRST_STATE + range.start..FIRST_STATE + range.end;
+        let mut changed = !layout.driveline.is_empty()
+            && model.driveline.decide(&instant.demand, &mut y[own(&layout.driveline)]);
+        for (effect, range) in
+            model.effects.iter().zip(&layout.effects).filter(|(_, range)| !range.is_empty())
+        {
+            changed |= effect.plugin.decide(&instant.situation, &mut y[own(range)]);
+        }
+        changed
     }
 
     /// The balance where the machine stands.

@@ -26,7 +26,7 @@ const BATTERY: (&str, &str) = (
 );
 
 /// Each effect with parameters that show, and a channel in which they show: on the car, or on the tractor.
-const EFFECTS: [(&str, &str, &str); 37] = [
+const EFFECTS: [(&str, &str, &str); 39] = [
     ("wind", "(speed_m_s: 4.0, from_rad: 0.5)", "tractive_force_n"),
     ("grade", "(positions_m: [0.0, 40.0, 90.0], grades: [0.0, 0.03, -0.01])", "tractive_force_n"),
     ("grade_constant", "(grade: 0.02)", "tractive_force_n"),
@@ -82,6 +82,17 @@ const EFFECTS: [(&str, &str, &str); 37] = [
         "(auxiliary_power: \"p_w * (F_drive / f1_n)^2\", constants: {\"p_w\": 1000.0, \"f1_n\": 5000.0})",
         "battery_current_a",
     ),
+    (
+        "expression",
+        "(resistance: \"f_n * latched(v, on_m_s, off_m_s)\", \
+          constants: {\"f_n\": 150.0, \"on_m_s\": 5.0, \"off_m_s\": 2.0})",
+        "tractive_force_n",
+    ),
+    (
+        "expression",
+        "(resistance: \"f_n * exp(-way / l_m)\", constants: {\"f_n\": 150.0, \"l_m\": 40.0})",
+        "tractive_force_n",
+    ),
 ];
 
 fn needs_engine(effect: &str) -> bool {
@@ -110,8 +121,13 @@ fn model(engine: bool, effects: &[(&str, &str)]) -> Model {
         tasks: Vec::new(),
         effects: effects
             .iter()
-            .map(|(name, parameters)| Named {
-                name: (*name).to_owned(),
+            .enumerate()
+            .map(|(place, (name, parameters))| Named {
+                // A second one of a name has a name of its own, as in a scenario.
+                name: match effects[..place].iter().filter(|(other, _)| other == name).count() {
+                    0 => (*name).to_owned(),
+                    before => format!("{name}_{}", before + 1),
+                },
                 plugin: registry.effects.build(name, parameters, folder).unwrap(),
             })
             .collect(),

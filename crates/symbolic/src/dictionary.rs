@@ -59,7 +59,7 @@ pub(crate) fn envelopes(variables: &[Checked], wave: usize) -> Vec<Factor> {
                         .map(|share| make(Shape::Bump, 0.2 * of.spread(), of.low + share * of.spread())),
                 );
             }
-            Kind::Coordinate => all.push(make(Shape::Decay, 0.3 * of.size(), 0.0)),
+            Kind::Coordinate | Kind::Way => all.push(make(Shape::Decay, 0.3 * of.size(), 0.0)),
             Kind::Gate => all.extend([Shape::On, Shape::Off].map(|shape| make(shape, 1.0, 0.0))),
             _ => {}
         }
@@ -88,6 +88,15 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
             all.extend(EDGES.map(|width| make(Shape::Step, width * of.spread(), centre)));
         }
     };
+    // Where a switch goes on and off: every two of the centres that are far enough apart.
+    let latches = |all: &mut Vec<Factor>| {
+        let at = |share: f64| of.low + share * of.spread();
+        for (place, on) in CENTRES.into_iter().enumerate() {
+            all.extend(
+                CENTRES[..place].iter().map(|off| make(Shape::Latch, (on - off) * of.spread(), at(on))),
+            );
+        }
+    };
     match of.known.kind {
         Kind::Size | Kind::Coordinate => {
             all.extend(POWERS.map(|p| make(Shape::Power(p), of.round_size(), 0.0)));
@@ -95,6 +104,16 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
             let bends = [Shape::Tanh, Shape::Saturation, Shape::Hyperbola, Shape::Decay, Shape::Rise];
             curved(&mut all, &bends, of.size());
             edges(&mut all);
+            if of.known.kind == Kind::Size {
+                latches(&mut all);
+            }
+        }
+        Kind::Way => {
+            curved(&mut all, &[Shape::Hyperbola, Shape::Decay], of.size());
+            for share in CENTRES {
+                let centre = of.low + share * of.spread();
+                all.extend(EDGES.map(|width| make(Shape::Step, width * of.spread(), centre)));
+            }
         }
         Kind::Level => {
             all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
@@ -143,6 +162,7 @@ fn short(variables: &[Checked], index: usize) -> Vec<Factor> {
                 [0.15, 0.38, 0.62, 0.85].map(|share| make(Shape::Bump, 0.12 * of.spread(), at(share))),
             );
         }
+        Kind::Way => all.extend([0.07, 0.25, 0.8].map(|share| make(Shape::Decay, share * of.size(), 0.0))),
         Kind::Level => {
             all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
             all.push(make(Shape::Decay, 0.4 * of.spread(), 0.0));
@@ -219,6 +239,11 @@ mod tests {
         (0..64).map(one).collect()
     }
 
+    /// They go straight on from the first.
+    fn way_m(at: &Situation) -> f64 {
+        at.position_m + 20.0
+    }
+
     fn value(name: &str, at: &Situation) -> f64 {
         let wind = at.air.wind_from_rad - at.place.heading_rad;
         match name {
@@ -227,6 +252,7 @@ mod tests {
             "F_drive" => at.tractive_force_n,
             "engine_speed" => at.engine_speed_rad_s.unwrap_or(f64::NAN),
             "x" => at.position_m,
+            "way" => way_m(at),
             "t" => at.time_s,
             "heading" => at.place.heading_rad,
             "kappa" => at.place.curvature_per_m,
@@ -268,7 +294,10 @@ mod tests {
             let factors = full(&checked, 0);
             factors
                 .iter()
-                .map(|factor| (factor.value(0.7, &checked[0]).0, factor.value(-0.7, &checked[0]).0))
+                .map(|factor| {
+                    let both = factor.along(&[0.7, -0.7], &checked[0]);
+                    (both[0].0, both[1].0)
+                })
                 .collect()
         };
         assert!(values(true).len() > 2 && values(true).iter().all(|(ahead, back)| ahead == back));
@@ -320,8 +349,18 @@ mod tests {
                 format!("(auxiliary_power: \"{}\", constants: {})", law.text, law.constants_text());
             let effect = registry.effects.build("expression", &parameters, std::path::Path::new("."));
             let effect = effect.unwrap_or_else(|error| panic!("{parameters}: {error}"));
+            let names: Vec<&str> = effect.states().iter().map(|state| state.name).collect();
+            let mut states = vec![0.0; names.len()];
             for (at, told) in situations.iter().zip(&law.prediction[0]) {
-                let found = effect.act(at, &[], &mut []).auxiliary_power_w;
+                for (state, _) in states.iter_mut().zip(&names).filter(|(_, name)| **name == "way_m") {
+                    *state = way_m(at);
+                }
+                effect.decide(at, &mut states);
+                // Where a switch goes over between two samples both are means.
+                if names.contains(&"latched") && (told / law.constants[0].value).fract() != 0.0 {
+                    continue;
+                }
+                let found = effect.act(at, &states, &mut vec![0.0; states.len()]).auxiliary_power_w;
                 assert!((found - told).abs() <= 1e-9 * told.abs().max(1.0), "{parameters}: {found}, {told}");
             }
         }

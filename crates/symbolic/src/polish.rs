@@ -145,15 +145,14 @@ fn slope(bench: &Bench, terms: &[Term], amplitudes: &[f64], (index, factor, free
     let inner: &[f64] = if phased { &[1.0] } else { share };
     let (below, above) = (moved(-NUDGE), moved(NUDGE));
     bench.rows(|run| {
-        let mut slope: Vec<f64> = of.seen[run]
-            .iter()
-            .map(|u| (above.sized(*u, of, inner) - below.sized(*u, of, inner)) / (2.0 * NUDGE))
-            .collect();
+        let (above, below) = (above.sized(&of.seen[run], of, inner), below.sized(&of.seen[run], of, inner));
+        let mut slope: Vec<f64> =
+            above.iter().zip(&below).map(|(above, below)| (above - below) / (2.0 * NUDGE)).collect();
         for (_, other) in term.factors.iter().enumerate().filter(|(place, _)| *place != factor) {
             let of = &bench.variables[other.variable];
             let share = if other.shape.has_phase() { share } else { &[1.0] };
-            for (slope, u) in slope.iter_mut().zip(of.seen[run].iter()) {
-                *slope *= other.sized(*u, of, share);
+            for (slope, sized) in slope.iter_mut().zip(other.sized(&of.seen[run], of, share)) {
+                *slope *= sized;
             }
         }
         slope

@@ -6,6 +6,7 @@
 use crate::SymbolicError;
 use crate::chance::{Chance, Null, persistence, statistic};
 use crate::dictionary::{dictionary, envelopes};
+use crate::levels::levelled;
 use crate::polish::{Polished, amplitudes, polish};
 use crate::problem::Bench;
 use crate::screen::Screen;
@@ -163,7 +164,8 @@ impl Hunt<'_> {
             if (self.stop)() {
                 return Err(SymbolicError::Interrupted);
             }
-            Ok(amplitudes(self.bench, terms).map(|start| self.on(polish(self.bench, start, STEPS))))
+            Ok(amplitudes(self.bench, terms)
+                .map(|start| self.on(polish(self.bench, levelled(self.bench, start), STEPS))))
         };
         let all: Result<Vec<Option<Polished>>, _> = starts.into_par_iter().map(one).collect();
         Ok(all?.into_iter().flatten().collect())

@@ -2,6 +2,7 @@
 //!
 //! Each divides its variable by a scale of the same unit, so that its value is a pure number whatever the variable is.
 
+use crate::latch::latched;
 use crate::variable::{Checked, DRIVE, Kind};
 use std::f64::consts::TAU;
 
@@ -32,6 +33,8 @@ pub(crate) enum Shape {
     Step,
     /// exp(−((u − c)/s)²)
     Bump,
+    /// A switch: on from c upward until u is at c − s or below
+    Latch,
     /// sin(2π u/s + φ)
     Wave,
     /// On and off again and again: ½ (1 + tanh(k (sin(2π (u − c)/s) − l))), with the level l that the data move; on for
@@ -66,7 +69,7 @@ impl Shape {
             }
             Self::FreePower(_) => &[Free::Power],
             Self::Above(_) | Self::Below(_) => &[Free::Centre],
-            Self::Step | Self::Bump => &[Free::Centre, Free::Scale],
+            Self::Step | Self::Bump | Self::Latch => &[Free::Centre, Free::Scale],
             Self::Pulse(_) => &[Free::Centre, Free::Scale, Free::Level],
             _ => &[],
         }
@@ -115,15 +118,15 @@ fn takes_size(shape: Shape, of: &Checked) -> bool {
         Shape::Power(p) => p.fract() != 0.0 || (both && p.rem_euclid(2.0) == 1.0),
         Shape::FreePower(_) => true,
         Shape::Saturation | Shape::Hyperbola => of.negative || lost,
-        Shape::Decay | Shape::Rise => both,
+        Shape::Decay | Shape::Rise | Shape::Latch => both,
         Shape::Tanh => lost && !of.negative,
         _ => false,
     }
 }
 
 impl Factor {
-    /// Its value at a sample: the sine, and the cosine where it has a phase.
-    pub fn value(&self, u: f64, of: &Checked) -> (f64, f64) {
+    /// Its value at a sample: the sine, and the cosine where it has a phase. What it remembers it has from [`Factor::along`] alone.
+    fn value(&self, u: f64, of: &Checked) -> (f64, f64) {
         let Self { scale: s, centre: c, .. } = *self;
         let u = if takes_size(self.shape, of) { u.abs() } else { u };
         let value = match self.shape {
@@ -143,6 +146,7 @@ impl Factor {
             Shape::Below(p) => ((c - u) / s).max(0.0).powi(i32::from(p)),
             Shape::Step => 0.5 * (1.0 + ((u - c) / s).tanh()),
             Shape::Bump => (-((u - c) / s).powi(2)).exp(),
+            Shape::Latch => f64::from(u8::from(u >= c)),
             Shape::Wave => return (TAU * u / s).sin_cos(),
             Shape::Pulse(level) => 0.5 * (1.0 + (EDGE * ((TAU * (u - c) / s).sin() - level)).tanh()),
             Shape::Harmonic(n) => return (f64::from(n) * u).sin_cos(),
@@ -152,10 +156,22 @@ impl Factor {
         (value, 0.0)
     }
 
-    /// Its value at a sample, with the amplitudes of sine and cosine where it has a phase and else with the one that there is.
-    pub fn sized(&self, u: f64, of: &Checked, share: &[f64]) -> f64 {
-        let (value, cosine) = self.value(u, of);
-        share.get(1).map_or(share[0] * value, |other| share[0] * value + other * cosine)
+    /// Its values along a run: the sine, and the cosine where it has a phase.
+    pub fn along(&self, run: &[f64], of: &Checked) -> Vec<(f64, f64)> {
+        if self.shape != Shape::Latch {
+            return run.iter().map(|u| self.value(*u, of)).collect();
+        }
+        let size = takes_size(self.shape, of);
+        let values = run.iter().map(|u| if size { u.abs() } else { *u });
+        latched(values, self.centre, self.centre - self.scale).into_iter().map(|on| (on, 0.0)).collect()
+    }
+
+    /// Its values along a run, with the amplitudes of sine and cosine where it has a phase and else with the one that there is.
+    pub fn sized(&self, run: &[f64], of: &Checked, share: &[f64]) -> Vec<f64> {
+        let sum = |(value, cosine): (f64, f64)| {
+            share.get(1).map_or(share[0] * value, |other| share[0] * value + other * cosine)
+        };
+        self.along(run, of).into_iter().map(sum).collect()
     }
 
     /// As text, with the names of its scale, centre, phase, and power or level.
@@ -178,6 +194,7 @@ impl Factor {
             Shape::Below(p) => format!("max(({centre} - {u}) / {scale}, 0)^{p}"),
             Shape::Step => format!("0.5 * (1 + tanh(({u} - {centre}) / {scale}))"),
             Shape::Bump => format!("exp(-(({u} - {centre}) / {scale})^2)"),
+            Shape::Latch => format!("latched({u}, {centre}, {centre} - {scale})"),
             Shape::Wave => format!("sin({TAU} * {u} / {scale} + {phase})"),
             Shape::Pulse(_) => {
                 format!("0.5 * (1 + tanh({EDGE} * (sin({TAU} * ({u} - {centre}) / {scale}) - {power})))")

@@ -57,7 +57,7 @@ impl Term {
         let mut phased: Option<(Vec<f64>, Vec<f64>)> = None;
         for factor in &self.factors {
             let of = &variables[factor.variable];
-            let values = values(of).iter().map(|u| factor.value(*u, of));
+            let values = factor.along(values(of), of).into_iter();
             if factor.shape.has_phase() {
                 phased = Some(values.unzip());
             } else {

@@ -31,6 +31,8 @@ pub(crate) enum Kind {
     Size,
     /// Along which things change, begin, end and repeat: position, time.
     Coordinate,
+    /// From nothing at the begin of each run: what wears off with it starts anew every time.
+    Way,
     /// Whose zero is a convention: temperature, elevation.
     Level,
     /// Of either sign, with a zero that means something.
@@ -70,12 +72,13 @@ const ENGINE_SPEED: &str = "engine_speed";
 pub(crate) const DRIVE: &str = "F_drive";
 
 /// Everything that may stand in a law.
-pub(crate) const KNOWN: [Known; 21] = [
+pub(crate) const KNOWN: [Known; 22] = [
     known("v", "m/s", "_m_s", Kind::Size),
     known(ACCELERATION, "m/s²", "_m_s2", Kind::Signed),
     known(ENGINE_SPEED, "rad/s", "_rad_s", Kind::Size),
     known(DRIVE, "N", "_n", Kind::Signed),
     known("x", "m", "_m", Kind::Coordinate),
+    known("way", "m", "_m", Kind::Way),
     known("t", "s", "_s", Kind::Coordinate),
     known("heading", "rad", "_rad", Kind::Angle),
     known("kappa", "1/m", "_per_m", Kind::Signed),

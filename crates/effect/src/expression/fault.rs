@@ -1,6 +1,6 @@
 //! What is wrong with an expression, and where.
 
-use super::names::{FUNCTIONS, VARIABLES};
+use super::names::{FUNCTIONS, VARIABLES, WAY};
 use super::parser::Constant;
 use headland_plugin::{Refusal, closest};
 use std::ops::Range;
@@ -27,6 +27,7 @@ impl Fault {
     /// A name that stands for nothing.
     pub(super) fn unknown(text: &str, span: Range<usize>, constants: &[Constant]) -> Self {
         let mut known: Vec<&str> = VARIABLES.iter().map(|variable| variable.name).collect();
+        known.push(WAY);
         known.extend(FUNCTIONS.iter().map(|function| function.name));
         known.extend(constants.iter().map(|constant| constant.name.as_str()));
         let suggestion = closest(&text[span.clone()], &known)

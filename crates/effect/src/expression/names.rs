@@ -67,6 +67,8 @@ pub(super) enum Rule {
     Root,
     /// As the operator `^`.
     Power,
+    /// Arguments of one unit, and a pure number.
+    Switch,
 }
 
 /// A function that expressions may call.
@@ -80,16 +82,16 @@ pub(super) struct Function {
 
 const fn function(name: &'static str, rule: Rule, step: Step) -> Function {
     let arguments = match step {
-        Step::Push(_) | Step::Load(_) => 0,
+        Step::Push(_) | Step::Load(_) | Step::Recall(_) => 0,
         Step::One(_) => 1,
         Step::Two(_) => 2,
-        Step::Three(_) => 3,
+        Step::Three(_) | Step::Latch(_) => 3,
     };
     Function { name, arguments, rule, step }
 }
 
 /// Every function. What is not a number stays so: none of them turns NaN into a number.
-pub(super) const FUNCTIONS: [Function; 13] = [
+pub(super) const FUNCTIONS: [Function; 14] = [
     function("min", Rule::Same, Step::Two(least)),
     function("max", Rule::Same, Step::Two(greatest)),
     function("clamp", Rule::Same, Step::Three(clamp)),
@@ -103,7 +105,15 @@ pub(super) const FUNCTIONS: [Function; 13] = [
     function("sin", Rule::Pure, Step::One(f64::sin)),
     function("cos", Rule::Pure, Step::One(f64::cos)),
     function("tanh", Rule::Pure, Step::One(f64::tanh)),
+    function("latched", Rule::Switch, Step::Latch(0)),
 ];
+
+/// The distance that was driven since the run began, either way: the one variable that is remembered [m].
+pub(super) const WAY: &str = "way";
+pub(super) const WAY_UNIT: &str = "m";
+
+/// What an expression may remember, by the names of its states: how far it came, and whether each of its switches is on.
+pub(super) const REMEMBERED: [&str; 5] = ["way_m", "latched", "latched_2", "latched_3", "latched_4"];
 
 /// Comparisons by their sign: 1 where they hold, 0 where not.
 pub(super) const COMPARISONS: [(&str, Step); 6] = [
@@ -154,12 +164,14 @@ pub(super) fn power(base: f64, exponent: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::program::Program;
     use super::*;
 
     #[test]
     fn every_unit_is_one_and_no_name_stands_twice() {
         let mut names: Vec<&str> = VARIABLES.iter().map(|variable| variable.name).collect();
         names.extend(FUNCTIONS.iter().map(|function| function.name));
+        names.push(WAY);
         for name in &names {
             assert_eq!(names.iter().filter(|other| other == &name).count(), 1, "{name}");
         }
@@ -176,7 +188,16 @@ mod tests {
                 Step::One(f) => vec![f(nan)],
                 Step::Two(f) => vec![f(nan, 0.0), f(1.0, nan)],
                 Step::Three(f) => vec![f(nan, 0.0, 1.0), f(0.0, nan, 1.0), f(0.0, 0.0, nan)],
-                Step::Push(_) | Step::Load(_) => Vec::new(),
+                Step::Latch(place) => {
+                    let mut program = Program::default();
+                    for operand in [Step::Load(|at| at.speed_m_s), Step::Push(0.0), Step::Push(1.0)] {
+                        program.push(operand).unwrap();
+                    }
+                    program.push(*step).unwrap();
+                    let unknown = Situation { speed_m_s: nan, ..Situation::default() };
+                    vec![program.value(&unknown, &vec![0.0; place + 1])]
+                }
+                Step::Push(_) | Step::Load(_) | Step::Recall(_) => Vec::new(),
             };
             assert!(!values.is_empty() && values.iter().all(|value| value.is_nan()), "{name}: {values:?}");
         }

@@ -12,7 +12,9 @@
 use super::dimension::Dimension;
 use super::fault::Fault;
 use super::lexer::{Kind, Token, next};
-use super::names::{COMPARISONS, FUNCTIONS, Function, MADE, Rule, VARIABLES, power};
+use super::names::{
+    COMPARISONS, FUNCTIONS, Function, MADE, REMEMBERED, Rule, VARIABLES, WAY, WAY_UNIT, power,
+};
 use super::program::{Program, Step};
 use super::units::{Operand, same_unit};
 use headland_units::parse_unit;
@@ -41,11 +43,16 @@ pub(super) struct Compiled {
     pub made: Vec<Range<usize>>,
 }
 
-/// Compiles a text.
-pub(super) fn compile(text: &str, constants: &[Constant]) -> Result<Compiled, Fault> {
+/// Compiles a text; `memory` holds what the texts before it remember, and holds what this one does as well then.
+pub(super) fn compile(
+    text: &str,
+    constants: &[Constant],
+    memory: &mut Vec<&'static str>,
+) -> Result<Compiled, Fault> {
     let uses = vec![false; constants.len()];
     let (token, program) = (next(text, 0), Program::default());
-    let mut parser = Parser { text, constants, token, end: 0, program, uses, made: Vec::new(), depth: 0 };
+    let mut parser =
+        Parser { text, constants, memory, token, end: 0, program, uses, made: Vec::new(), depth: 0 };
     let whole = parser.comparison()?;
     if parser.token.kind != Kind::End {
         return Err(parser.unexpected("an operator or the end"));
@@ -57,6 +64,7 @@ pub(super) fn compile(text: &str, constants: &[Constant]) -> Result<Compiled, Fa
 struct Parser<'a> {
     text: &'a str,
     constants: &'a [Constant],
+    memory: &'a mut Vec<&'static str>,
     /// The word that comes next.
     token: Token,
     /// Where the last word ended.
@@ -203,6 +211,11 @@ impl<'a> Parser<'a> {
             self.emit(Step::Push(constant.value), span.clone())?;
             return Ok(operand(constant.dimension));
         }
+        if name == WAY {
+            let place = self.place_of_way();
+            self.emit(Step::Recall(place), span.clone())?;
+            return Ok(operand(dimension(WAY_UNIT)));
+        }
         let Some(variable) = VARIABLES.iter().find(|variable| variable.name == name) else {
             return Err(Fault::unknown(self.text, span, self.constants));
         };
@@ -210,7 +223,27 @@ impl<'a> Parser<'a> {
             self.made.push(span.clone());
         }
         self.emit(Step::Load(variable.of), span.clone())?;
-        Ok(operand(parse_unit(variable.unit).map_or(Dimension::NONE, |unit| Dimension::of(&unit))))
+        Ok(operand(dimension(variable.unit)))
+    }
+
+    /// Where the way is remembered; all that name it share one place.
+    fn place_of_way(&mut self) -> usize {
+        let [way, ..] = REMEMBERED;
+        self.memory.iter().position(|name| *name == way).unwrap_or_else(|| {
+            self.memory.push(way);
+            self.memory.len() - 1
+        })
+    }
+
+    /// Where the next switch is remembered; each has a place of its own.
+    fn next_switch(&mut self, span: &Range<usize>) -> Result<usize, Fault> {
+        let [_, switches @ ..] = REMEMBERED;
+        let Some(free) = switches.iter().find(|name| !self.memory.contains(name)) else {
+            let expected = format!("at most {} switches in all formulas", switches.len());
+            return Err(Fault::at(self.text, span.clone(), "", &expected));
+        };
+        self.memory.push(free);
+        Ok(self.memory.len() - 1)
     }
 
     fn call(&mut self, function: &Function, start: usize) -> Result<Operand, Fault> {
@@ -234,7 +267,11 @@ impl<'a> Parser<'a> {
         }
         let span = start..self.end;
         let dimension = self.dimension_of(function, &arguments)?;
-        self.emit(function.step, span.clone())?;
+        let step = match function.step {
+            Step::Latch(_) => Step::Latch(self.next_switch(&span)?),
+            other => other,
+        };
+        self.emit(step, span.clone())?;
         Ok(Operand { dimension, literal: None, span })
     }
 
@@ -256,6 +293,12 @@ impl<'a> Parser<'a> {
                 Ok(Dimension::NONE)
             }
             Rule::Sign => Ok(Dimension::NONE),
+            Rule::Switch => {
+                for argument in &arguments[1..] {
+                    same_unit(self.text, first, argument)?;
+                }
+                Ok(Dimension::NONE)
+            }
             Rule::Root => Ok(first.dimension.to_the(0.5)),
             Rule::Power => first.raised(self.text, &arguments[1]),
         }
@@ -273,4 +316,8 @@ impl<'a> Parser<'a> {
         let literal = left.literal.zip(right.literal).map(|(a, b)| operation(a, b));
         Ok(Operand { dimension, literal, span })
     }
+}
+
+fn dimension(unit: &str) -> Dimension {
+    parse_unit(unit).map_or(Dimension::NONE, |unit| Dimension::of(&unit))
 }

@@ -18,6 +18,10 @@ pub(super) enum Step {
     Two(fn(f64, f64) -> f64),
     /// A function of three.
     Three(fn(f64, f64, f64) -> f64),
+    /// What is remembered in a place; it takes nothing.
+    Recall(usize),
+    /// A switch that is remembered in a place: of a value, and of those at which it goes on and off.
+    Latch(usize),
 }
 
 /// More values wait than there is room for.
@@ -50,8 +54,26 @@ impl Program {
         if self.waiting > STACK { Err(TooDeep) } else { Ok(()) }
     }
 
-    /// Its value in a situation; NaN where it is not defined there.
-    pub(super) fn value(&self, at: &Situation) -> f64 {
+    /// Its value in a situation, with what is remembered; NaN where it is not defined there.
+    pub(super) fn value(&self, at: &Situation, memory: &[f64]) -> f64 {
+        self.run(at, |place, _| memory[place])
+    }
+
+    /// Sets the switches that are remembered as a situation has them; whether any changed.
+    pub(super) fn switch(&self, at: &Situation, memory: &mut [f64]) -> bool {
+        let mut changed = false;
+        self.run(at, |place, of| {
+            let before = memory[place];
+            if let Some([value, on, off]) = of {
+                memory[place] = switched(before, value, on, off);
+            }
+            changed |= memory[place] != before;
+            memory[place]
+        });
+        changed
+    }
+
+    fn run(&self, at: &Situation, mut recall: impl FnMut(usize, Option<[f64; 3]>) -> f64) -> f64 {
         let mut stack = [0.0; STACK];
         let mut top = 0;
         for step in &self.steps {
@@ -62,6 +84,11 @@ impl Program {
                 Step::One(f) => f(stack[first]),
                 Step::Two(f) => f(stack[first], stack[first + 1]),
                 Step::Three(f) => f(stack[first], stack[first + 1], stack[first + 2]),
+                Step::Recall(place) => recall(place, None),
+                Step::Latch(place) => {
+                    let of = [stack[first], stack[first + 1], stack[first + 2]];
+                    if of.iter().any(|value| value.is_nan()) { f64::NAN } else { recall(place, Some(of)) }
+                }
             };
             top = first + 1;
         }
@@ -80,11 +107,24 @@ impl Program {
 impl Step {
     fn operands(self) -> usize {
         match self {
-            Self::Push(_) | Self::Load(_) => 0,
+            Self::Push(_) | Self::Load(_) | Self::Recall(_) => 0,
             Self::One(_) => 1,
             Self::Two(_) => 2,
-            Self::Three(_) => 3,
+            Self::Three(_) | Self::Latch(_) => 3,
         }
+    }
+}
+
+/// A switch, 1 or 0: it goes on at `on` and off at `off`, and between them it stays what it is. Where `on` lies below, it goes on as
+/// the value falls.
+fn switched(before: f64, value: f64, on: f64, off: f64) -> f64 {
+    let (is_on, is_off) = if on >= off { (value >= on, value <= off) } else { (value <= on, value >= off) };
+    if is_on {
+        1.0
+    } else if is_off {
+        0.0
+    } else {
+        before
     }
 }
 
@@ -108,7 +148,7 @@ mod tests {
         let load = Step::Load(|at| at.speed_m_s);
         let five_v = program(&[Step::Push(7.0), Step::Push(2.0), minus, load, times]);
         assert_eq!(five_v.steps.len(), 3);
-        assert_eq!(five_v.value(&Situation { speed_m_s: 3.0, ..Situation::default() }), 15.0);
+        assert_eq!(five_v.value(&Situation { speed_m_s: 3.0, ..Situation::default() }, &[]), 15.0);
         assert_eq!(five_v.last(), None);
         assert_eq!(program(&[Step::Push(7.0), Step::Push(2.0), minus]).last(), Some(5.0));
     }

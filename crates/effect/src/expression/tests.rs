@@ -1,7 +1,7 @@
 //! Formulas by hand, and what is refused.
 
 use super::Expression;
-use super::names::{FUNCTIONS, VARIABLES};
+use super::names::{FUNCTIONS, VARIABLES, WAY, WAY_UNIT};
 use crate::testing::{act, at_10_m_s, build, same};
 use headland_plugin::{Air, Place, Plugin, Situation};
 
@@ -70,6 +70,7 @@ fn the_card_tells_every_name_and_unit() {
     for function in &FUNCTIONS {
         assert!(told.contains(&function.name), "{}", function.name);
     }
+    assert!(told.windows(2).any(|pair| pair == [WAY, &format!("[{WAY_UNIT}]")]));
 }
 
 #[test]
@@ -109,6 +110,8 @@ fn functions_have_their_values() {
         ("sin(heading)", 0.479_425_538_604_203),
         ("cos(heading)", 0.877_582_561_890_372_8),
         ("tanh(slope)", 0.537_049_566_998_035_3),
+        // Nothing decided yet.
+        ("latched(slope, 0.5, 0.4)", 0.0),
     ] {
         // What is not used is refused, so each text uses it.
         let value = force_n(&format!("one_n * ({text}) + 0 * one_n * (v / v1_m_s)"), "\"v1_m_s\": 2.0");
@@ -254,4 +257,56 @@ fn a_power_may_name_the_acceleration_and_a_force_may_not() {
         message.contains("`acceleration` in what makes it") && message.contains("powers may name it"),
         "{message}"
     );
+}
+
+/// On at 4 m/s, off at 2 m/s, whatever lies between: and the other way round where `on` is the lower one. A switch of its own for each.
+#[test]
+fn a_switch_stays_as_it_is_between_the_values_that_move_it() {
+    let both = "(resistance: \"f_n * latched(v, fast_m_s, slow_m_s)\", \
+                 force: \"f_n * latched(v, slow_m_s, fast_m_s)\", \
+                 constants: {\"f_n\": 100.0, \"fast_m_s\": 4.0, \"slow_m_s\": 2.0})";
+    let effect = build::<Expression>(both).unwrap();
+    let names: Vec<&str> = effect.states().iter().map(|state| state.name).collect();
+    assert_eq!(names, ["latched", "latched_2"]);
+    let mut states = [0.0; 2];
+    for (speed_m_s, expected, changes) in [
+        (3.0, (0.0, 0.0), false),
+        (5.0, (100.0, 0.0), true),
+        (3.0, (100.0, 0.0), false),
+        (2.0, (0.0, 100.0), true),
+        (3.0, (0.0, 100.0), false),
+        (4.0, (100.0, 0.0), true),
+    ] {
+        let at = Situation { speed_m_s, ..situation() };
+        assert_eq!(effect.decide(&at, &mut states), changes, "{speed_m_s}");
+        let action = effect.act(&at, &states, &mut [0.0; 2]);
+        assert_eq!((action.resistance_n, action.force_n), expected, "{speed_m_s}");
+    }
+    let unknown = Situation { speed_m_s: f64::NAN, ..situation() };
+    assert!(!effect.decide(&unknown, &mut states) && states == [1.0, 0.0]);
+    assert!(effect.act(&unknown, &states, &mut [0.0; 2]).force_n.is_nan());
+}
+
+/// 100 N · exp(−60 m / 30 m), and both formulas know one way; it grows backward too.
+#[test]
+fn the_way_is_what_was_driven_and_not_where_it_began() {
+    let fades = "(resistance: \"f_n * exp(-way / l_m)\", force: \"f_n * way / l_m\", \
+                  constants: {\"f_n\": 100.0, \"l_m\": 30.0})";
+    let effect = build::<Expression>(fades).unwrap();
+    assert_eq!(effect.states().iter().map(|state| state.name).collect::<Vec<_>>(), ["way_m"]);
+    let mut rates = [f64::NAN];
+    let backward = Situation { speed_m_s: -3.0, ..situation() };
+    let action = effect.act(&backward, &[60.0], &mut rates);
+    assert!(same(action.resistance_n, 100.0 * (-2.0f64).exp()) && same(action.force_n, 200.0));
+    assert_eq!(rates, [3.0]);
+}
+
+#[test]
+fn switches_have_units_and_there_are_not_too_many_of_them() {
+    assert!(
+        refused("f_n * latched(v, f_n, v0_m_s)")
+            .contains("`f_n` at character 18, which is in N, expected m/s")
+    );
+    let five = ["latched(v, v0_m_s, v0_m_s / 2)"; 5].join(" + ");
+    assert!(refused(&format!("f_n * ({five})")).contains("at most 4 switches in all formulas"));
 }

@@ -2,6 +2,7 @@
 
 use crate::plant::{At, Plant};
 use headland_symbolic::{Found, Options, find};
+use std::cell::Cell;
 use std::f64::consts::TAU;
 
 /// Fewer draws than the default: the tests look at laws far from the threshold.
@@ -104,6 +105,24 @@ fn what_is_clocked_is_found_as_a_pulse_with_its_period_and_its_share() {
     close(constant(&found, "t2_s"), 7.3);
     let on = constant(&found, "level1").0.acos() / std::f64::consts::PI;
     assert!((on - ON).abs() < 0.02, "{on} {}", law.text);
+}
+
+/// A flap that opens at one speed and closes at another remembers which it passed last: no function of speed says that.
+#[test]
+fn a_switch_that_latches_is_found_with_its_levels() {
+    const ON_M_S: f64 = 6.37;
+    const OFF_M_S: f64 = 3.18;
+    let open = Cell::new(false);
+    let flap = |at: &At| {
+        open.set(at.v >= ON_M_S || at.v > OFF_M_S && at.t > 0.0 && open.get());
+        if open.get() { 450.0 } else { 0.0 }
+    };
+    let (found, r2) = found(8, 100.0, flap);
+    let law = found.law().unwrap();
+    assert!(r2 > 0.95 && law.terms == 1 && law.text.contains("latched(v, "), "{r2} {}", law.text);
+    close(constant(&found, "a1_n"), 450.0);
+    let (on, over) = (constant(&found, "v1_m_s").0, constant(&found, "v2_m_s").0);
+    assert!((on - ON_M_S).abs() < 0.1 && (on - over - OFF_M_S).abs() < 0.1, "{on} {over}");
 }
 
 #[test]

@@ -2,11 +2,12 @@
 //!
 //! A map of the ground is free to be almost anything along a path, and takes the place of what any other cause does on average
 //! there; a clock that runs apart from the others moves the begin of a run little and its end much, and does a part of what a
-//! late speed does. A search that begins with one of them may not come back. Where one is claimed and looks like that, by lying off
-//! nought all along or by leaving more than noise, the runs are looked at once more without it, and the runs that were held out
-//! decide.
+//! late speed does; and a force of another scale is all that goes with it, before a law that nobody listed can say what is missing, since
+//! sensors come first. A search that begins with one of them may not come back. Where one is claimed and looks like that, by lying off
+//! nought all along, by leaving more than noise or, of a scale, by standing beside physics, the runs are looked at once more without it,
+//! and the runs that were held out decide.
 
-use crate::report::{Diagnosed, Diagnosis, FindingReport, Fit, FitRuns, Verdict};
+use crate::report::{Diagnosed, Diagnosis, FindingKind, FindingReport, Fit, FitRuns, Verdict};
 use crate::rivals::twin;
 use crate::{DiagnoseError, Options};
 
@@ -14,6 +15,8 @@ use crate::{DiagnoseError, Options};
 const MAP: &str = "soft_ground";
 /// What is late by the clock.
 const CLOCK: &str = "clock_drift";
+/// What goes with all of a force.
+const SCALE: &str = "force_scale";
 /// A map with one value.
 const LEVEL: &str = "rolling_resistance";
 /// What is left is this many times the noise, and more.
@@ -21,16 +24,18 @@ const MORE_THAN_NOISE: f64 = 1.5;
 /// The error with another set of causes has to be less than this share of what it is with the first.
 const BETTER: f64 = 0.85;
 
-/// What the runs are to be looked at without.
-fn doubtful(first: &Diagnosis) -> Vec<&'static str> {
-    let leaves = first.fit.lack_of_fit > MORE_THAN_NOISE;
-    let found = |id: &str| first.findings.iter().find(|finding| finding.id == id);
+/// What the runs are to be looked at without: of some findings that leave so many times the noise.
+fn doubtful(findings: &[FindingReport], lack_of_fit: f64) -> Vec<&'static str> {
+    let leaves = lack_of_fit > MORE_THAN_NOISE;
+    let found = |id: &str| findings.iter().find(|finding| finding.id == id);
     let level = |map: &FindingReport| map.indistinguishable_from.iter().any(|rival| rival.id == LEVEL);
     let map = found(MAP).is_some_and(|map| leaves || level(map)).then_some(MAP);
     // What a channel shows by itself was sought by no search.
     let sought = |clock: &FindingReport| clock.evidence[0] > 0.0;
     let clock = (leaves && found(CLOCK).is_some_and(sought)).then_some(CLOCK);
-    map.into_iter().chain(clock).collect()
+    let physics = findings.iter().any(|finding| finding.kind != FindingKind::Artefact);
+    let scale = (physics && found(SCALE).is_some_and(sought)).then_some(SCALE);
+    map.into_iter().chain(clock).chain(scale).collect()
 }
 
 /// A map follows the runs that it was made of; what stands in its place may leave so many times the error in those.
@@ -50,11 +55,21 @@ fn is_better(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
         && fitted < fitted_first * if id == MAP { FOLLOWS } else { 1.0 }
 }
 
-/// Whether another opinion takes the place of the first, in which `id` was doubtful. A clock that runs apart is one thing; what
-/// takes more than it does to say the same is a patch. And a map that goes by another name, which was named beside it, is the same.
+/// Whether another opinion takes the place of the first, in which `id` was doubtful. A clock that runs apart is one thing, and so is a
+/// scale; what takes more than it does to say the same is a patch. And a map that goes by another name, which was named beside it, is
+/// the same.
 fn wins(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
-    let patches = id == CLOCK && other.findings.len() > first.findings.len();
-    is_better(id, other, first) && !patches && !is_renamed(id, &other.findings, &first.findings)
+    let patches = [CLOCK, SCALE].contains(&id) && other.findings.len() > first.findings.len();
+    let held_out = |one: &Diagnosis| Some((one.findings.len(), one.fit.held_out.as_ref()?.rmse_after));
+    let plainer = held_out(other).zip(held_out(first)).is_some_and(|(other, first)| is_plainer(other, first));
+    let better = is_better(id, other, first) || id == SCALE && plainer;
+    better && !patches && !is_renamed(id, &other.findings, &first.findings)
+}
+
+/// Whether fewer causes, but not none, tell the runs held out no worse: a sensor at fault is then one cause too many. Each by their number
+/// and the error that they leave.
+fn is_plainer((others, error): (usize, f64), (first, error_first): (usize, f64)) -> bool {
+    (1..first).contains(&others) && error <= error_first
 }
 
 /// Whether others found by its other name what was found first, and could not be told from that.
@@ -73,7 +88,7 @@ pub fn opinion(
     look: impl Fn(&Options) -> Result<Diagnosed, DiagnoseError>,
 ) -> Result<Diagnosed, DiagnoseError> {
     let mut best = first;
-    for id in doubtful(&best.diagnosis) {
+    for id in doubtful(&best.diagnosis.findings, best.diagnosis.fit.lack_of_fit) {
         let without = options.without.iter().cloned().chain([id.to_owned()]).collect();
         match look(&Options { without, ..options.clone() }) {
             Ok(other) if wins(id, &other.diagnosis, &best.diagnosis) => best = other,
@@ -87,8 +102,8 @@ pub fn opinion(
 
 #[cfg(test)]
 mod tests {
-    use super::{LEVEL, MAP, is_renamed};
-    use crate::report::FindingKind::Physics;
+    use super::{LEVEL, MAP, SCALE, doubtful, is_plainer, is_renamed};
+    use crate::report::FindingKind::{Artefact, Physics};
     use crate::report::finding;
 
     #[test]
@@ -99,5 +114,15 @@ mod tests {
         // What was driven both ways tells the two apart, and a level is no map.
         assert!(!is_renamed(MAP, &slopes, &[finding(Physics, MAP, None)]));
         assert!(!is_renamed(MAP, &[finding(Physics, LEVEL, None)], &first));
+    }
+    /// A sensor at fault by itself is one, and beside physics it may be what no listed cause said.
+    #[test]
+    fn a_scale_beside_physics_is_looked_at_once_more() {
+        let scale = || finding(Artefact, SCALE, None);
+        assert_eq!(doubtful(&[scale(), finding(Physics, "rolling_speed_law", None)], 1.0), [SCALE]);
+        assert!(doubtful(&[scale(), finding(Artefact, "quantisation", None)], 1.0).is_empty());
+        // Fewer causes have to be some, and leave no more.
+        assert!(is_plainer((2, 0.070), (3, 0.078)) && !is_plainer((3, 0.070), (3, 0.078)));
+        assert!(!is_plainer((0, 0.070), (3, 0.078)) && !is_plainer((2, 0.080), (3, 0.078)));
     }
 }

@@ -2,7 +2,8 @@
 //! and no fuel. A driver brakes as well, and where nobody recorded it the engine may take less and go on to burn: what it does then
 //! says nothing of forces and consumers. Nor does it where the force was measured at wheels that brakes hold as well. And where the
 //! vehicle's engine cut its fuel the model's may burn some, on a slope that the scenario does not know: the fuel says no more there
-//! than that the wheels drove the engine, however hard they did. A run that drove up there tells how steep it is.
+//! than that the wheels drove the engine, however hard they did. A run that drove up there tells how steep it is. Where both cut their fuel
+//! it says nothing at all: it has no noise there, which is not that of an engine that works, and no consumer shows in it.
 //!
 //! An engine that idles while the vehicle slows down has nothing to do with its wheels: it is out of gear, or the driver brakes. What
 //! the motion asks for there, and with it every gust and every hump, is none of its fuel.
@@ -24,7 +25,7 @@ const ONE_PLACE_M: f64 = 20.0;
 /// The samples at which the model's engine takes no fuel and that of the vehicle may: the force follows from the motion in a run
 /// whose brakes were not recorded, or the fuel itself says that the engine went on to burn. Then whatever slows the wheels may be
 /// their brakes; and so it may where both the force at the wheels and the engine's own torque were measured and hold back, but for
-/// a switch that says that nobody braked.
+/// a switch that says that nobody braked. By fuel alone none of them says anything.
 pub fn overruns(run: &Recorded, said: &Said) -> Vec<bool> {
     let Some(modelled) = &said.fuel_kg_s else { return vec![false; run.measured.trace.len()] };
     let switch = run.measured.trace.get("brake");
@@ -38,9 +39,14 @@ pub fn overruns(run: &Recorded, said: &Said) -> Vec<bool> {
         let held_back = run.engine_w.as_ref().is_some_and(|power_w| power_w[sample] < 0.0) && force_n < 0.0;
         let may_brake = switch.is_none_or(|switch| switch[sample] >= 0.5 || switch[sample].is_nan());
         let overruns = cut && !force_n.is_finite() && !brake || burns && (cut || force_n < 0.0);
-        overruns || held_back && may_brake || idles[sample]
+        is_silent(*modelled, run.engine_w.is_some()) || overruns || held_back && may_brake || idles[sample]
     };
     modelled.iter().enumerate().map(of).collect()
+}
+
+/// Whether the fuel that is measured says nothing where the model's engine takes so much [kg/s]: none, and nobody recorded its torque.
+fn is_silent(modelled_kg_s: f64, by_torque: bool) -> bool {
+    modelled_kg_s <= 0.0 && !by_torque
 }
 
 /// The samples at which an engine idles, in a run whose force follows from the motion.
@@ -154,7 +160,7 @@ fn usual_kg_s(measured: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{goes_on_to_burn, lowest};
+    use super::{goes_on_to_burn, is_silent, lowest};
 
     /// Fuel without force of vehicles that free-wheel when they slow down was told as another rolling resistance by its speed where
     /// nothing was missing.
@@ -172,6 +178,15 @@ mod tests {
         assert!(lowest(&moving, &of(0.001, 0.1), &fuel, &fuel).is_empty());
         assert!(lowest(&moving, &slows, &fuel, &of(1e-4, 2e-3)).is_empty());
         assert!(lowest(&[], &[], &[], &[]).is_empty());
+    }
+
+    /// Rows without noise were taken for those of a fuel that is known as well everywhere, and consumers of 6.5 kW were told where nothing
+    /// was hidden.
+    #[test]
+    fn fuel_that_is_cut_off_says_nothing() {
+        assert!(is_silent(0.0, false) && !is_silent(2e-4, false));
+        // Its torque says how hard the wheels drive it.
+        assert!(!is_silent(0.0, true) && !is_silent(f64::NAN, false));
     }
 
     #[test]

@@ -52,6 +52,7 @@ impl Sought {
         let drive_n = |(run, said): (&Recorded, &Said)| match (target, kind) {
             (Target::Share, Kind::Motion) => run.known_force_n(),
             (Target::Share, _) => drive_n(run, said),
+            (Target::Power, Kind::Shaft | Kind::Fuel) if run.force_is_known() => drive_n(run, said),
             _ => Vec::new(),
         };
         let drive_n = case.runs.iter().zip(&case.nominal).map(drive_n).collect();
@@ -155,9 +156,12 @@ impl Sought {
         if self.target == Target::Share {
             all.retain(|variable| OF_A_DRIVE.contains(&variable.name.as_str()));
         }
-        if self.target == Target::Share {
+        // What an engine gives beside its wheels goes with the size of their force, whichever way that acts: its sign is that of a power
+        // that is known.
+        let by_size = self.target != Target::Share;
+        if !by_size || self.drive_n.iter().all(|run| !run.is_empty()) && self.target == Target::Power {
             let (name, unit) = ("F_drive".to_owned(), "N".to_owned());
-            all.push(Variable { name, unit, runs: self.drive_n.clone(), finest: 0.0, by_size: false });
+            all.push(Variable { name, unit, runs: self.drive_n.clone(), finest: 0.0, by_size });
         }
         all
     }

@@ -4,7 +4,7 @@
 
 use crate::shape::{Factor, Shape};
 use crate::term::Term;
-use crate::variable::{Checked, Kind};
+use crate::variable::{ACCELERATION, Checked, Kind};
 
 /// Powers of a size. Sources of the halves: rolling in soil and flow through gaps have such exponents.
 const POWERS: [f64; 5] = [0.5, 1.0, 1.5, 2.0, 3.0];
@@ -128,7 +128,10 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
             if of.negative {
                 all.extend([1.0, 2.0].map(|p| make(Shape::SignedPower(p), of.round_size(), 0.0)));
             }
-            curved(&mut all, &[Shape::Tanh], of.size());
+            // Where a speed is held, the noise of the force decides on the sign of an acceleration.
+            if of.known.name != ACCELERATION {
+                curved(&mut all, &[Shape::Tanh], of.size());
+            }
             all.extend(
                 CENTRES.map(|share| make(Shape::Above(1), of.round_size(), of.low + share * of.spread())),
             );

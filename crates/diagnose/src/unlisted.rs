@@ -149,6 +149,9 @@ fn candidates(
     starts.extend(anywhen.iter().map(|anywhen| (Vec::new(), anywhen)));
     for (start, sought) in starts {
         let told = laws(case, system, pool, &start, &found.stand, sought)?;
+        if let Some(law) = told.first() {
+            fadings(case, system, pool, law)?;
+        }
         if let Some(law) = told.first().filter(|_| start.is_empty() && rows <= MANY_ROWS) {
             candidates.extend(with_less(case, system, pool, law, sought));
         }
@@ -167,8 +170,15 @@ fn candidates(
             && (rows <= MANY_ROWS || worth(&settled) > worth(&found.stand))
             && let Some(better) = first_sound(laws(case, system, pool, &start, &settled, sought)?, sought)
         {
+            let is_another = better.text != law.text;
             law = better;
             part = add(case, system, pool, &law, sought);
+            if is_another {
+                fadings(case, system, pool, &law)?;
+                if start.is_empty() && rows <= MANY_ROWS {
+                    candidates.extend(with_less(case, system, pool, &law, sought));
+                }
+            }
         }
         candidates.push(with(&part));
         candidates.push(vec![part]);
@@ -219,6 +229,7 @@ fn beside(
     let mut lasting: Vec<Stand> = Vec::new();
     let mut best: Option<Stand> = None;
     let mut as_good: Option<Stand> = None;
+    let mut shorter: Vec<Stand> = Vec::new();
     let listed_of = |state: &State, stand: &Stand| -> Vec<Part> {
         stand.parts.iter().filter(|part| state.cause(&part.trial).law.is_none()).cloned().collect()
     };
@@ -261,6 +272,9 @@ fn beside(
             let plainer =
                 state.numbers(&stand.parts) < state.numbers(&found.stand.parts) && more > -TOLERANCE;
             let doubtful = sound && as_short && (plainer || more > DOUBT * margin);
+            if able && clearly && !listed_of(&state, &stand).is_empty() {
+                shorter.push(stand.clone());
+            }
             if able && clearly && better(&stand, &best) {
                 best = Some(stand);
             } else if (able || doubtful) && better(&stand, &as_good) {
@@ -273,6 +287,7 @@ fn beside(
     if let Some(concluded) = foretells.and_then(|stand| concluded(&state, stand, &found)) {
         return Ok(concluded);
     }
+    best = best.map(|best| state.with_known(best, shorter));
     // A law that was found by itself has what stood in for the listed causes beside it: it is looked for once more beside them.
     if let Some(stand) = best.clone() {
         let listed = listed_of(&state, &stand);
@@ -339,18 +354,12 @@ fn is_map(law: &Law, target: Target, placed: bool) -> bool {
     !alone && terms.iter().any(|term| only(term))
 }
 
-/// Whether a term of a law may as well be none: several that take each other back say nothing of any. Nor does one that goes with
-/// the sign of an acceleration: where a speed is held, the noise of the force decides on it, and that noise is in the power as well.
+/// Whether a term of a law may as well be none: several that take each other back say nothing of any.
 fn is_undetermined(law: &Law) -> bool {
-    const SCALE: &str = "acceleration";
     let nothing = |constant: &headland_symbolic::Constant| {
         constant.sd.is_some_and(|sd| constant.value.abs() < crate::refine::HALF_95 * sd)
     };
-    let decides = |constant: &headland_symbolic::Constant| {
-        constant.is_amplitude()
-            || constant.name.starts_with(SCALE) && law.text.contains("tanh(acceleration /")
-    };
-    law.constants.iter().any(|constant| decides(constant) && nothing(constant))
+    law.constants.iter().any(|constant| constant.is_amplitude() && nothing(constant))
 }
 
 impl State<'_> {
@@ -454,6 +463,29 @@ impl State<'_> {
         stand.parts.iter().map(of).sum()
     }
 
+    /// The set with a law, or one with a listed cause in the place of a term of it. As for a whole law, the shape of a listed cause is known
+    /// from elsewhere, so that a term has to say more by a margin and by a share of what that cause brings.
+    fn with_known(&self, best: Stand, others: Vec<Stand>) -> Stand {
+        let terms = |stand: &Stand| -> usize {
+            let laws = stand.parts.iter().filter_map(|part| self.cause(&part.trial).law.as_ref());
+            laws.map(|law| law.terms).sum()
+        };
+        let is_known = |other: &Stand| {
+            if terms(other) >= terms(&best) || self.pieces(other) > self.pieces(&best) {
+                return false;
+            }
+            let law: Vec<Part> =
+                other.parts.iter().filter(|part| self.cause(&part.trial).law.is_some()).cloned().collect();
+            let Some(alone) = self.settle(&law, &other.noises).filter(|_| !law.is_empty()) else {
+                return false;
+            };
+            let brought = (worth(other) - worth(&alone)).max(0.0);
+            worth(other) + MARGIN + BETTER * brought > worth(&best)
+        };
+        let known = others.into_iter().filter(is_known);
+        known.max_by(|one, other| worth(one).total_cmp(&worth(other))).unwrap_or(best)
+    }
+
     /// How many numbers are estimated in a set, beside its functions.
     pub fn numbers(&self, parts: &[Part]) -> usize {
         parts.iter().map(|part| self.cause(&part.trial).numbers()).sum()
@@ -494,7 +526,7 @@ impl State<'_> {
         mapped && stand.parts.iter().any(drawn)
     }
 
-    /// Whether a law of a set says the same as a listed cause in other words.
+    /// Whether a law of a set says the same as a listed cause in other words, which can be what it would have to be then.
     fn is_listed(&self, stand: &Stand) -> bool {
         let Some(reduced) = self.reduced(&stand.noises, &[]) else { return true };
         let nuisance: Vec<usize> = (0..self.pool.nuisance).collect();
@@ -505,10 +537,20 @@ impl State<'_> {
                 let cause = self.cause(trial);
                 cause.law.is_none() && !cause.is_function()
             });
-            listed.into_iter().any(|trial| {
+            let same = |trial: &&Trial| {
                 reduced.squared_correlation(&law.trial.columns, &trial.columns, &nuisance, &sd) > OTHER_WORDS
-            })
+            };
+            listed.filter(same).any(|trial| self.can_stand_for(law, trial, stand))
         })
+    }
+
+    /// Whether a set with a listed cause in the place of a law can be.
+    fn can_stand_for(&self, law: &Part, trial: &Trial, stand: &Stand) -> bool {
+        let others = stand.parts.iter().filter(|part| part.trial.columns != law.trial.columns);
+        let own = Part { trial: trial.clone(), spread: None };
+        let parts: Vec<Part> = others.cloned().chain([own]).collect();
+        self.settle(&parts, &stand.noises)
+            .is_some_and(|other| !self.impossible(&other.parts, &other.estimate))
     }
 
     /// Whether a law of a set says in other words what one or two listed causes say together.
@@ -577,6 +619,22 @@ fn windows(case: &Case, system: &System, pool: &mut Pool, law: &Law) -> Result<V
         }
     }
     Ok(pool.trials[before..].iter().map(|trial| Part { trial: trial.clone(), spread: None }).collect())
+}
+
+/// Adds the listed causes that fade by a time constant of their own at those by which the terms of a law do: beside the rest of the law
+/// another may be theirs than the one that suits them alone.
+fn fadings(case: &Case, system: &System, pool: &mut Pool, law: &Law) -> Result<(), DiagnoseError> {
+    let fades =
+        |constant: &&headland_symbolic::Constant| law.text.contains(&format!("exp(-t / {})", constant.name));
+    for constant in law.constants.iter().filter(fades) {
+        for (number, cause) in case.causes.iter().enumerate() {
+            let shape = [constant.value];
+            if cause.own.is_none() && cause.fades() && cause.possible(&shape) {
+                add_trial(case, system, pool, number, &shape)?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// When a law sets in and ends [s]: at two steps, about the middle of one bump, or where what goes on and off again and again

@@ -2,7 +2,7 @@
 //!
 //! A map of the ground is free to be almost anything along a path, and takes the place of what any other cause does on average
 //! there; a clock that runs apart from the others moves the begin of a run little and its end much, and does a part of what a
-//! late speed does; and a force of another scale is all that goes with it, before a law that nobody listed can say what is missing, since
+//! late speed does; and another scale of a force or a speed is all that goes with it, before a law that nobody listed can say what is missing, since
 //! sensors come first. A search that begins with one of them may not come back. Where one is claimed and looks like that, by lying off
 //! nought all along, by leaving more than noise or, of a scale, by standing beside physics, the runs are looked at once more without it,
 //! and the runs that were held out decide.
@@ -15,8 +15,8 @@ use crate::{DiagnoseError, Options};
 const MAP: &str = "soft_ground";
 /// What is late by the clock.
 const CLOCK: &str = "clock_drift";
-/// What goes with all of a force.
-const SCALE: &str = "force_scale";
+/// What goes with all of a force, or of a speed.
+const SCALES: [&str; 2] = ["force_scale", "speed_scale"];
 /// A map with one value.
 const LEVEL: &str = "rolling_resistance";
 /// What is left is this many times the noise, and more.
@@ -34,8 +34,8 @@ fn doubtful(findings: &[FindingReport], lack_of_fit: f64) -> Vec<&'static str> {
     let sought = |clock: &FindingReport| clock.evidence[0] > 0.0;
     let clock = (leaves && found(CLOCK).is_some_and(sought)).then_some(CLOCK);
     let physics = findings.iter().any(|finding| finding.kind != FindingKind::Artefact);
-    let scale = (physics && found(SCALE).is_some_and(sought)).then_some(SCALE);
-    map.into_iter().chain(clock).chain(scale).collect()
+    let scales = SCALES.into_iter().filter(|scale| physics && found(scale).is_some_and(sought));
+    map.into_iter().chain(clock).chain(scales).collect()
 }
 
 /// A map follows the runs that it was made of; what stands in its place may leave so many times the error in those.
@@ -59,10 +59,11 @@ fn is_better(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
 /// scale; what takes more than it does to say the same is a patch. And a map that goes by another name, which was named beside it, is
 /// the same.
 fn wins(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
-    let patches = [CLOCK, SCALE].contains(&id) && other.findings.len() > first.findings.len();
+    let is_scale = SCALES.contains(&id);
+    let patches = (id == CLOCK || is_scale) && other.findings.len() > first.findings.len();
     let held_out = |one: &Diagnosis| Some((one.findings.len(), one.fit.held_out.as_ref()?.rmse_after));
     let plainer = held_out(other).zip(held_out(first)).is_some_and(|(other, first)| is_plainer(other, first));
-    let better = is_better(id, other, first) || id == SCALE && plainer;
+    let better = is_better(id, other, first) || is_scale && plainer;
     better && !patches && !is_renamed(id, &other.findings, &first.findings)
 }
 
@@ -102,7 +103,7 @@ pub fn opinion(
 
 #[cfg(test)]
 mod tests {
-    use super::{LEVEL, MAP, SCALE, doubtful, is_plainer, is_renamed};
+    use super::{LEVEL, MAP, SCALES, doubtful, is_plainer, is_renamed};
     use crate::report::FindingKind::{Artefact, Physics};
     use crate::report::finding;
 
@@ -118,9 +119,11 @@ mod tests {
     /// A sensor at fault by itself is one, and beside physics it may be what no listed cause said.
     #[test]
     fn a_scale_beside_physics_is_looked_at_once_more() {
-        let scale = || finding(Artefact, SCALE, None);
-        assert_eq!(doubtful(&[scale(), finding(Physics, "rolling_speed_law", None)], 1.0), [SCALE]);
-        assert!(doubtful(&[scale(), finding(Artefact, "quantisation", None)], 1.0).is_empty());
+        for scale in SCALES {
+            let own = || finding(Artefact, scale, None);
+            assert_eq!(doubtful(&[own(), finding(Physics, "rolling_speed_law", None)], 1.0), [scale]);
+            assert!(doubtful(&[own(), finding(Artefact, "quantisation", None)], 1.0).is_empty());
+        }
         // Fewer causes have to be some, and leave no more.
         assert!(is_plainer((2, 0.070), (3, 0.078)) && !is_plainer((3, 0.070), (3, 0.078)));
         assert!(!is_plainer((0, 0.070), (3, 0.078)) && !is_plainer((2, 0.080), (3, 0.078)));

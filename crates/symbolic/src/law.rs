@@ -83,6 +83,27 @@ impl Law {
     }
 }
 
+/// Whether two terms of a formula have a factor in common, whatever its constants are: they are one law then, f(u) times a sum.
+pub fn shares_a_factor(text: &str) -> bool {
+    let factors = |term: &str| -> Vec<String> {
+        let named = |factor: &&str| known_variables().any(|(name, _)| has_word(factor, name));
+        term.split(" * ").filter(named).map(without_numbers_of_names).collect()
+    };
+    let all: Vec<Vec<String>> = terms(text).into_iter().map(factors).collect();
+    let shared = |one: &Vec<String>, other: &Vec<String>| one.iter().any(|factor| other.contains(factor));
+    all.iter().enumerate().any(|(place, one)| all[place + 1..].iter().any(|other| shared(one, other)))
+}
+
+/// A text without the numbers that tell names apart: `v1_m_s` and `v2_m_s` are one, `v / 3` stays.
+fn without_numbers_of_names(text: &str) -> String {
+    let mut within = false;
+    let keep = |letter: &char| {
+        within = letter.is_alphabetic() || *letter == '_' || within && letter.is_ascii_digit();
+        !(within && letter.is_ascii_digit())
+    };
+    text.chars().filter(keep).collect()
+}
+
 fn has_word(text: &str, word: &str) -> bool {
     let letter = |c: char| c.is_alphanumeric() || c == '_';
     text.split(|c: char| !letter(c)).any(|own| own == word)
@@ -226,6 +247,16 @@ impl Writer {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn terms_of_one_factor_are_one_law() {
+        let step = "a1_n * (v / v1_m_s) * 0.5 * (1 + tanh((temperature - temperature1_c) / temperature2_k))";
+        assert!(shares_a_factor(&format!("{step} + a2_n * (v / v2_m_s)")));
+        assert!(!shares_a_factor(&format!("{step} + a2_n * (v / v2_m_s)^2")));
+        assert!(
+            !shares_a_factor("a1_n * 0.5 * (v / v1_m_s) + a2_n * 0.5 * (x / x1_m)") && !shares_a_factor(step)
+        );
+    }
 
     #[test]
     fn what_is_added_within_a_bracket_is_no_term() {

@@ -2,10 +2,10 @@
 //!
 //! A map of the ground is free to be almost anything along a path, and takes the place of what any other cause does on average
 //! there; a clock that runs apart from the others moves the begin of a run little and its end much, and does a part of what a
-//! late speed does; and another scale of a force or a speed is all that goes with it, before a law that nobody listed can say what is missing, since
-//! sensors come first. A search that begins with one of them may not come back. Where one is claimed and looks like that, by lying off
-//! nought all along, by leaving more than noise or, of a scale, by standing beside physics, the runs are looked at once more without it,
-//! and the runs that were held out decide.
+//! late speed does; and another scale of a force or a speed is all that goes with it, before a law that nobody listed can say what
+//! is missing, since sensors come first. A search that begins with one of them may not come back. Where one is claimed and looks
+//! like that, by lying off nought all along, by leaving more than noise or, of a scale, by standing beside physics, the runs are
+//! looked at once more without it, and the runs that were held out decide.
 
 use crate::report::{Diagnosed, Diagnosis, FindingKind, FindingReport, Fit, FitRuns, Verdict};
 use crate::rivals::twin;

@@ -1,7 +1,7 @@
 //! The constants of an expression: `{"coefficient": 0.02, "onset_m_s": 5.0}`.
 
 use super::dimension::Dimension;
-use super::names::{FUNCTIONS, VARIABLES};
+use super::names::{FUNCTIONS, VARIABLES, WAY};
 use super::parser::Constant;
 use crate::series::refuse;
 use headland_plugin::Refusal;
@@ -28,7 +28,8 @@ impl Constants {
                     "letters, digits and _, no digit first",
                 ));
             }
-            let known = VARIABLES.iter().any(|variable| variable.name == name)
+            let known = name == WAY
+                || VARIABLES.iter().any(|variable| variable.name == name)
                 || FUNCTIONS.iter().any(|function| function.name == name);
             if known || all.iter().any(|other| other.name == *name) {
                 let found = if known { "the name of a variable or a function" } else { "given twice" };

@@ -206,7 +206,10 @@ fn what_is_missing_or_needless_is_refused() {
     let message = |parameters: &str| build::<Expression>(parameters).unwrap_err();
     assert!(message("()").contains("expected at least one of `resistance`"));
     assert!(message("(force: \"0\", constants: {\"c\": 1.0})").contains("`constants.c` is in no formula"));
-    assert!(message("(force: \"0\", constants: {\"v\": 1.0})").contains("the name of a variable"));
+    for taken in ["v", "way", "latched"] {
+        let found = message(&format!("(force: \"0\", constants: {{\"{taken}\": 1.0}})"));
+        assert!(found.contains("the name of a variable"), "{taken}: {found}");
+    }
     assert!(message("(force: \"c\", constants: {\"c\": 1, \"c\": 2})").contains("given twice"));
     assert!(message("(force: \"0\", constants: {\"2c\": 1.0})").contains("no digit first"));
     assert!(message("(force: \"f_n\", constants: {\"f_n\": inf})").contains("`constants.f_n` is inf"));

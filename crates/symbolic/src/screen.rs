@@ -43,7 +43,7 @@ impl Screen {
     ) -> Result<Self, SymbolicError> {
         let (mut terms, mut waves) = (dictionary, Vec::new());
         for (index, of) in bench.variables.iter().enumerate() {
-            if ![Kind::Coordinate, Kind::Size].contains(&of.known.kind) {
+            if of.known.kind != Kind::Coordinate {
                 continue;
             }
             let begin = terms.len();
@@ -134,17 +134,11 @@ impl Screen {
     }
 }
 
-/// How many waves of a coordinate are told apart by its samples and by the rows, or of a speed are looked for.
+/// How many waves of a coordinate are told apart by its samples and by the rows.
 fn waves_of(bench: &Bench, index: usize) -> usize {
     /// Samples in the shortest wave.
     const SAMPLES: f64 = 4.0;
-    /// Cycles over all speeds: what resonates does so a few times.
-    const OVER_SPEEDS: f64 = 4.0;
     let of = &bench.variables[index];
-    if of.known.kind == Kind::Size {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small number")]
-        return (OVER_SPEEDS / CYCLES_APART) as usize;
-    }
     let by_samples = of.spread() / (SAMPLES * of.step.max(f64::MIN_POSITIVE));
     // Half a cycle a row is the most that rows can hold of something that follows the clock.
     let longest = bench.fitted.iter().map(|(_, rows)| *rows).max().unwrap_or(0);

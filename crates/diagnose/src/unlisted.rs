@@ -12,7 +12,7 @@ use crate::search::{Found, MOST_CAUSES, OTHER_WORDS, TOLERANCE, concluded, worth
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Trial, add_trial};
 use crate::{Case, DiagnoseError, System};
-use headland_symbolic::{Law, Target, shares_a_factor};
+use headland_symbolic::{Law, Target, hangs_together};
 
 /// A law has to be worth so much more than the listed causes: odds of four hundred to one.
 const MARGIN: f64 = 6.0;
@@ -465,10 +465,10 @@ impl State<'_> {
 
     /// The set with a law, or one with a listed cause in the place of a term of it. As for a whole law, the shape of a listed cause is known
     /// from elsewhere, so that a term has to say more by a margin and by a share of what that cause brings. Terms that have a factor in
-    /// common are one law, of which no part is another's.
+    /// common, or name the same variables, are one law, of which no part is another's.
     fn with_known(&self, best: Stand, others: Vec<Stand>) -> Stand {
         let mut laws = best.parts.iter().filter_map(|part| self.cause(&part.trial).law.as_ref());
-        if laws.any(|law| shares_a_factor(&law.text)) {
+        if laws.any(|law| hangs_together(&law.text)) {
             return best;
         }
         let terms = |stand: &Stand| -> usize {

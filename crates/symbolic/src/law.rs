@@ -76,22 +76,28 @@ impl Law {
 
     /// Names of the variables of each of its terms.
     pub fn variables_of_terms(&self) -> Vec<Vec<&'static str>> {
-        let of = |term: &str| -> Vec<&'static str> {
-            known_variables().map(|(name, _)| name).filter(|name| has_word(term, name)).collect()
-        };
-        terms(&self.text).into_iter().map(of).collect()
+        terms(&self.text).into_iter().map(named).collect()
     }
 }
 
-/// Whether two terms of a formula have a factor in common, whatever its constants are: they are one law then, f(u) times a sum.
-pub fn shares_a_factor(text: &str) -> bool {
+/// Whether two terms of a formula have a factor in common, whatever its constants are, or name the same variables: they are one law
+/// then, f(u) times a sum or one curve.
+pub fn hangs_together(text: &str) -> bool {
     let factors = |term: &str| -> Vec<String> {
-        let named = |factor: &&str| known_variables().any(|(name, _)| has_word(factor, name));
-        term.split(" * ").filter(named).map(without_numbers_of_names).collect()
+        let factors = term.split(" * ").filter(|factor| !named(factor).is_empty());
+        factors.map(without_numbers_of_names).collect()
     };
-    let all: Vec<Vec<String>> = terms(text).into_iter().map(factors).collect();
-    let shared = |one: &Vec<String>, other: &Vec<String>| one.iter().any(|factor| other.contains(factor));
+    let of = |term: &str| (named(term), factors(term));
+    let all: Vec<(Vec<&str>, Vec<String>)> = terms(text).into_iter().map(of).collect();
+    let shared = |(names, one): &(Vec<&str>, Vec<String>), (others, other): &(Vec<&str>, Vec<String>)| {
+        names == others || one.iter().any(|factor| other.contains(factor))
+    };
     all.iter().enumerate().any(|(place, one)| all[place + 1..].iter().any(|other| shared(one, other)))
+}
+
+/// The variables that a piece of a formula names.
+fn named(text: &str) -> Vec<&'static str> {
+    known_variables().map(|(name, _)| name).filter(|name| has_word(text, name)).collect()
 }
 
 /// A text without the numbers that tell names apart: `v1_m_s` and `v2_m_s` are one, `v / 3` stays.
@@ -249,13 +255,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn terms_of_one_factor_are_one_law() {
+    fn terms_of_one_factor_or_of_the_same_variables_are_one_law() {
         let step = "a1_n * (v / v1_m_s) * 0.5 * (1 + tanh((temperature - temperature1_c) / temperature2_k))";
-        assert!(shares_a_factor(&format!("{step} + a2_n * (v / v2_m_s)")));
-        assert!(!shares_a_factor(&format!("{step} + a2_n * (v / v2_m_s)^2")));
+        assert!(hangs_together(&format!("{step} + a2_n * (v / v2_m_s)")));
+        assert!(!hangs_together(&format!("{step} + a2_n * (v / v2_m_s)^2")));
         assert!(
-            !shares_a_factor("a1_n * 0.5 * (v / v1_m_s) + a2_n * 0.5 * (x / x1_m)") && !shares_a_factor(step)
+            !hangs_together("a1_n * 0.5 * (v / v1_m_s) + a2_n * 0.5 * (x / x1_m)") && !hangs_together(step)
         );
+        // A hump and what levels off say one curve of speed.
+        assert!(hangs_together("a1_n * exp(-((v - v1_m_s) / v2_m_s)^2) + a2_n * tanh(v / v3_m_s)"));
     }
 
     #[test]

@@ -12,7 +12,7 @@ use crate::search::{Found, MOST_CAUSES, OTHER_WORDS, TOLERANCE, concluded, worth
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Trial, add_trial};
 use crate::{Case, DiagnoseError, System};
-use headland_symbolic::{Law, Target, hangs_together};
+use headland_symbolic::{Law, Target};
 
 /// A law has to be worth so much more than the listed causes: odds of four hundred to one.
 const MARGIN: f64 = 6.0;
@@ -149,9 +149,6 @@ fn candidates(
     starts.extend(anywhen.iter().map(|anywhen| (Vec::new(), anywhen)));
     for (start, sought) in starts {
         let told = laws(case, system, pool, &start, &found.stand, sought)?;
-        if let Some(law) = told.first() {
-            fadings(case, system, pool, law)?;
-        }
         if let Some(law) = told.first().filter(|_| start.is_empty() && rows <= MANY_ROWS) {
             candidates.extend(with_less(case, system, pool, law, sought));
         }
@@ -170,15 +167,8 @@ fn candidates(
             && (rows <= MANY_ROWS || worth(&settled) > worth(&found.stand))
             && let Some(better) = first_sound(laws(case, system, pool, &start, &settled, sought)?, sought)
         {
-            let is_another = better.text != law.text;
             law = better;
             part = add(case, system, pool, &law, sought);
-            if is_another {
-                fadings(case, system, pool, &law)?;
-                if start.is_empty() && rows <= MANY_ROWS {
-                    candidates.extend(with_less(case, system, pool, &law, sought));
-                }
-            }
         }
         candidates.push(with(&part));
         candidates.push(vec![part]);
@@ -229,7 +219,6 @@ fn beside(
     let mut lasting: Vec<Stand> = Vec::new();
     let mut best: Option<Stand> = None;
     let mut as_good: Option<Stand> = None;
-    let mut shorter: Vec<Stand> = Vec::new();
     let listed_of = |state: &State, stand: &Stand| -> Vec<Part> {
         stand.parts.iter().filter(|part| state.cause(&part.trial).law.is_none()).cloned().collect()
     };
@@ -272,9 +261,6 @@ fn beside(
             let plainer =
                 state.numbers(&stand.parts) < state.numbers(&found.stand.parts) && more > -TOLERANCE;
             let doubtful = sound && as_short && (plainer || more > DOUBT * margin);
-            if able && clearly && !listed_of(&state, &stand).is_empty() {
-                shorter.push(stand.clone());
-            }
             if able && clearly && better(&stand, &best) {
                 best = Some(stand);
             } else if (able || doubtful) && better(&stand, &as_good) {
@@ -287,7 +273,6 @@ fn beside(
     if let Some(concluded) = foretells.and_then(|stand| concluded(&state, stand, &found)) {
         return Ok(concluded);
     }
-    best = best.map(|best| state.with_known(best, shorter));
     // A law that was found by itself has what stood in for the listed causes beside it: it is looked for once more beside them.
     if let Some(stand) = best.clone() {
         let listed = listed_of(&state, &stand);
@@ -463,34 +448,6 @@ impl State<'_> {
         stand.parts.iter().map(of).sum()
     }
 
-    /// The set with a law, or one with a listed cause in the place of a term of it. As for a whole law, the shape of a listed cause is known
-    /// from elsewhere, so that a term has to say more by a margin and by a share of what that cause brings. Terms that have a factor in
-    /// common, or name the same variables, are one law, of which no part is another's.
-    fn with_known(&self, best: Stand, others: Vec<Stand>) -> Stand {
-        let mut laws = best.parts.iter().filter_map(|part| self.cause(&part.trial).law.as_ref());
-        if laws.any(|law| hangs_together(&law.text)) {
-            return best;
-        }
-        let terms = |stand: &Stand| -> usize {
-            let laws = stand.parts.iter().filter_map(|part| self.cause(&part.trial).law.as_ref());
-            laws.map(|law| law.terms).sum()
-        };
-        let is_known = |other: &Stand| {
-            if terms(other) >= terms(&best) || self.pieces(other) > self.pieces(&best) {
-                return false;
-            }
-            let law: Vec<Part> =
-                other.parts.iter().filter(|part| self.cause(&part.trial).law.is_some()).cloned().collect();
-            let Some(alone) = self.settle(&law, &other.noises).filter(|_| !law.is_empty()) else {
-                return false;
-            };
-            let brought = (worth(other) - worth(&alone)).max(0.0);
-            worth(other) + MARGIN + BETTER * brought > worth(&best)
-        };
-        let known = others.into_iter().filter(is_known);
-        known.max_by(|one, other| worth(one).total_cmp(&worth(other))).unwrap_or(best)
-    }
-
     /// How many numbers are estimated in a set, beside its functions.
     pub fn numbers(&self, parts: &[Part]) -> usize {
         parts.iter().map(|part| self.cause(&part.trial).numbers()).sum()
@@ -624,22 +581,6 @@ fn windows(case: &Case, system: &System, pool: &mut Pool, law: &Law) -> Result<V
         }
     }
     Ok(pool.trials[before..].iter().map(|trial| Part { trial: trial.clone(), spread: None }).collect())
-}
-
-/// Adds the listed causes that fade by a time constant of their own at those by which the terms of a law do: beside the rest of the law
-/// another may be theirs than the one that suits them alone.
-fn fadings(case: &Case, system: &System, pool: &mut Pool, law: &Law) -> Result<(), DiagnoseError> {
-    let fades =
-        |constant: &&headland_symbolic::Constant| law.text.contains(&format!("exp(-t / {})", constant.name));
-    for constant in law.constants.iter().filter(fades) {
-        for (number, cause) in case.causes.iter().enumerate() {
-            let shape = [constant.value];
-            if cause.own.is_none() && cause.fades() && cause.possible(&shape) {
-                add_trial(case, system, pool, number, &shape)?;
-            }
-        }
-    }
-    Ok(())
 }
 
 /// When a law sets in and ends [s]: at two steps, about the middle of one bump, or where what goes on and off again and again

@@ -76,38 +76,11 @@ impl Law {
 
     /// Names of the variables of each of its terms.
     pub fn variables_of_terms(&self) -> Vec<Vec<&'static str>> {
-        terms(&self.text).into_iter().map(named).collect()
+        let of = |term: &str| -> Vec<&'static str> {
+            known_variables().map(|(name, _)| name).filter(|name| has_word(term, name)).collect()
+        };
+        terms(&self.text).into_iter().map(of).collect()
     }
-}
-
-/// Whether two terms of a formula have a factor in common, whatever its constants are, or name the same variables: they are one law
-/// then, f(u) times a sum or one curve.
-pub fn hangs_together(text: &str) -> bool {
-    let factors = |term: &str| -> Vec<String> {
-        let factors = term.split(" * ").filter(|factor| !named(factor).is_empty());
-        factors.map(without_numbers_of_names).collect()
-    };
-    let of = |term: &str| (named(term), factors(term));
-    let all: Vec<(Vec<&str>, Vec<String>)> = terms(text).into_iter().map(of).collect();
-    let shared = |(names, one): &(Vec<&str>, Vec<String>), (others, other): &(Vec<&str>, Vec<String>)| {
-        names == others || one.iter().any(|factor| other.contains(factor))
-    };
-    all.iter().enumerate().any(|(place, one)| all[place + 1..].iter().any(|other| shared(one, other)))
-}
-
-/// The variables that a piece of a formula names.
-fn named(text: &str) -> Vec<&'static str> {
-    known_variables().map(|(name, _)| name).filter(|name| has_word(text, name)).collect()
-}
-
-/// A text without the numbers that tell names apart: `v1_m_s` and `v2_m_s` are one, `v / 3` stays.
-fn without_numbers_of_names(text: &str) -> String {
-    let mut within = false;
-    let keep = |letter: &char| {
-        within = letter.is_alphabetic() || *letter == '_' || within && letter.is_ascii_digit();
-        !(within && letter.is_ascii_digit())
-    };
-    text.chars().filter(keep).collect()
 }
 
 fn has_word(text: &str, word: &str) -> bool {
@@ -253,18 +226,6 @@ impl Writer {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn terms_of_one_factor_or_of_the_same_variables_are_one_law() {
-        let step = "a1_n * (v / v1_m_s) * 0.5 * (1 + tanh((temperature - temperature1_c) / temperature2_k))";
-        assert!(hangs_together(&format!("{step} + a2_n * (v / v2_m_s)")));
-        assert!(!hangs_together(&format!("{step} + a2_n * (v / v2_m_s)^2")));
-        assert!(
-            !hangs_together("a1_n * 0.5 * (v / v1_m_s) + a2_n * 0.5 * (x / x1_m)") && !hangs_together(step)
-        );
-        // A hump and what levels off say one curve of speed.
-        assert!(hangs_together("a1_n * exp(-((v - v1_m_s) / v2_m_s)^2) + a2_n * tanh(v / v3_m_s)"));
-    }
 
     #[test]
     fn what_is_added_within_a_bracket_is_no_term() {

@@ -37,7 +37,7 @@ mod vector;
 pub use chance::Chance;
 pub use choose::Found;
 pub use error::SymbolicError;
-pub use law::{Constant, Law, constants_text, hangs_together};
+pub use law::{Constant, Law, constants_text};
 pub use problem::{Nuisance, Problem, Rows, Target};
 pub use search::Options;
 pub use variable::Variable;

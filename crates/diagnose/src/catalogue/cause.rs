@@ -126,13 +126,6 @@ impl Cause {
         self.places("from_s", "to_s")
     }
 
-    /// Whether all of its shape is a time constant.
-    pub fn fades(&self) -> bool {
-        let mut shape = self.terms.iter().filter(|term| !term.linear);
-        shape.next().is_some_and(|term| term.name == "time_constant_s" && !term.is_held())
-            && shape.next().is_none()
-    }
-
     /// Whether it is a map of how softly the ground bears.
     pub fn is_patch(&self) -> bool {
         self.form == Form::OverPosition && self.even().is_some_and(|(id, _)| id == "rolling_resistance")

@@ -470,7 +470,7 @@ fn walking(model: &headland_sim::Model) -> f64 {
 }
 
 /// Least and greatest of the finite values; infinite and reversed where there are none.
-fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+pub fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let finite = values.filter(|value| value.is_finite());
     finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }

@@ -2,19 +2,16 @@
 
 use crate::balance::Kind;
 use crate::catalogue::Cause;
+use crate::line::Line;
+use crate::nameable::variables;
 use crate::noise::Whiteners;
 use crate::recorded::Recorded;
 use crate::rows::Row;
-use crate::said::{Said, inputs};
+use crate::said::Said;
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Shown, effect, lost_drive_n, per_newton};
 use crate::{Case, DiagnoseError, System};
-use headland_calibrate::statistics::{mean, median};
-use headland_sim::{Inputs, travelled};
 use headland_symbolic::{Law, Nuisance, Options, Problem, Rows, SymbolicError, Target, Variable, find};
-
-/// A wave takes so many blocks of samples.
-const BLOCKS: f64 = 4.0;
 
 /// What is sought in a balance.
 pub struct Sought {
@@ -129,13 +126,7 @@ impl Sought {
         /// Of what the force rises by.
         const MOST: f64 = 0.5;
         let (forces_n, losses_n): (Vec<f64>, Vec<f64>) = self.forces_and_losses_n(law).unzip();
-        let (force_n, loss_n) = (mean(&forces_n), mean(&losses_n));
-        let (mut square, mut product) = (0.0, 0.0);
-        for (own_n, lost_n) in forces_n.iter().zip(&losses_n) {
-            square += (own_n - force_n).powi(2);
-            product += (own_n - force_n) * (lost_n - loss_n);
-        }
-        product > MOST * square
+        Line::through(&forces_n, &losses_n).slope > MOST
     }
 
     /// The size of the drive's force and what a law says is lost of it, sample by sample [N]; none where no share is sought.
@@ -353,165 +344,11 @@ fn enough(fit: &[bool], rows: &[Vec<f64>]) -> Vec<bool> {
     fit.iter().map(take).collect()
 }
 
-/// Mass that rests on the wheels, sample by sample, where that is known to differ; loads of a drive are told by themselves.
-fn masses_kg(case: &Case) -> Option<Vec<Vec<f64>>> {
-    let priors = case.study.priors();
-    let of_run = |run: &Recorded| {
-        let model = case.study.model(&run.measured, &priors).ok()?;
-        let trace = &run.measured.trace;
-        let carried = |index: usize| trace.get("payload_kg").map_or(0.0, |payload| payload[index]);
-        Some((0..trace.len()).map(|index| model.vehicle.mass_kg + carried(index)).collect())
-    };
-    case.runs.iter().map(of_run).collect()
-}
-
-/// How far every run came since it began, sample by sample, where that does not say where it is as well.
-fn ways_m(case: &Case) -> Option<Vec<Vec<f64>>> {
-    /// A way is something else than the place where it is off a straight line of that by this share of the longest.
-    const APART: f64 = 0.05;
-    let of_run = |run: &Recorded| {
-        let speeds: Vec<f64> = run.motion.value.iter().map(|speed| speed.abs()).collect();
-        travelled(run.measured.trace.time_s(), &speeds)
-    };
-    let ways: Vec<Vec<f64>> = case.runs.iter().map(of_run).collect();
-    let all: Vec<f64> = ways.iter().flatten().copied().collect();
-    let places: Vec<f64> = case.runs.iter().flat_map(|run| run.position_m.iter().copied()).collect();
-    let (way, place) = (mean(&all), mean(&places));
-    let (mut square, mut product) = (0.0, 0.0);
-    for (own, at) in all.iter().zip(&places) {
-        square += (at - place).powi(2);
-        product += (at - place) * (own - way);
-    }
-    let slope = if square > 0.0 { product / square } else { 0.0 };
-    let longest = all.iter().copied().fold(0.0, f64::max);
-    let apart =
-        all.iter().zip(&places).any(|(own, at)| (own - way - slope * (at - place)).abs() > APART * longest);
-    apart.then_some(ways)
-}
-
-/// What of a recorded wind blows against the vehicle, or across it from the right, sample by sample.
-fn wind_m_s(case: &Case, part: fn(f64) -> f64) -> Option<Vec<Vec<f64>>> {
-    let of_run = |run: &Recorded| {
-        let channel = |name: &str| run.measured.trace.get(name);
-        let (speed, from) = (channel("wind_speed_m_s")?, channel("wind_direction_rad")?);
-        let heading = channel("heading_rad")?;
-        let at = |index: usize| speed[index] * part(from[index] - heading[index]);
-        Some((0..speed.len()).map(at).collect())
-    };
-    case.runs.iter().map(of_run).collect()
-}
-
-/// What may stand in a law: of the situation, never made of what is to be explained.
-fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
-    /// Name, unit, samples of every run where they are known.
-    type Offered = (&'static str, &'static str, Option<Vec<Vec<f64>>>);
-    let channel = |name: &str| -> Option<Vec<Vec<f64>>> {
-        case.runs.iter().map(|run| run.measured.trace.get(name).map(<[f64]>::to_vec)).collect()
-    };
-    let of = |values: &dyn Fn(&crate::recorded::Recorded) -> Vec<f64>| {
-        Some(case.runs.iter().map(values).collect())
-    };
-    let block_s = crate::balance::block_s(kind, &case.runs, case.rows);
-    let speeds: Vec<f64> = case.runs.iter().flat_map(|run| run.motion.value.iter().copied()).collect();
-    let finest = |name: &str| match name {
-        "t" => BLOCKS * block_s,
-        "x" => BLOCKS * block_s * median(&speeds).abs(),
-        _ => 0.0,
-    };
-    let acceleration = kind.is_power().then(|| of(&accelerated_m_s2)).flatten();
-    // Where no force was measured a power is made of the acceleration already: what a mass would take of it, or what comes late,
-    // goes with its sign.
-    let forced = case.runs.iter().all(Recorded::force_is_known);
-    let engine_speed = channel("engine_speed_rad_s").filter(|runs| kind.is_power() && tells_more(case, runs));
-    let slope = Some(case.nominal.iter().map(|said| said.sin_slope.clone()).collect());
-    let offered: [Offered; 15] = [
-        ("v", "m/s", of(&|run| run.motion.value.clone())),
-        ("acceleration", "m/s²", acceleration),
-        ("engine_speed", "rad/s", engine_speed),
-        ("x", "m", of(&|run| run.position_m.clone())),
-        ("way", "m", ways_m(case)),
-        ("t", "s", of(&|run| run.measured.trace.time_s().to_vec())),
-        ("heading", "rad", channel("heading_rad").filter(|runs| turns(runs))),
-        ("kappa", "1/m", channel("curvature_per_m")),
-        ("temperature", "°C", channel("air_temperature_c")),
-        ("oil_temperature", "°C", channel("oil_temperature_c")),
-        ("coasting", "1", channel("coasting")),
-        ("slope", "1", slope),
-        ("m", "kg", masses_kg(case)),
-        ("headwind", "m/s", wind_m_s(case, f64::cos)),
-        ("crosswind", "m/s", wind_m_s(case, f64::sin)),
-    ];
-    let whole = |runs: &Vec<Vec<f64>>| runs.iter().flatten().all(|value| value.is_finite());
-    let variable = |(name, unit, runs): Offered| {
-        Some(Variable {
-            name: name.to_owned(),
-            unit: unit.to_owned(),
-            runs: runs.filter(whole)?,
-            finest: finest(name),
-            by_size: name == "acceleration" && !forced,
-        })
-    };
-    offered.into_iter().filter_map(variable).collect()
-}
-
-/// Acceleration of a run [m/s²]: as the force makes it, which shows what is sudden, and over longer as the speed does. What the
-/// nominal parameters are wrong by would else be an acceleration wherever a speed is held, and tell of that speed.
-fn accelerated_m_s2(run: &Recorded) -> Vec<f64> {
-    /// Beside the median over so long to either side nothing is sudden [s].
-    const AROUND_S: f64 = 3.0;
-    let (time_s, made) = (run.measured.trace.time_s(), &run.acceleration_m_s2);
-    let apart: Vec<f64> = run.motion.slope.iter().zip(made).map(|(recorded, made)| recorded - made).collect();
-    let lasting = |at: &f64| {
-        let from = time_s.partition_point(|time| *time < at - AROUND_S);
-        let to = time_s.partition_point(|time| *time <= at + AROUND_S);
-        let near: Vec<f64> = apart[from..to].iter().copied().filter(|apart| apart.is_finite()).collect();
-        if near.is_empty() { 0.0 } else { median(&near) }
-    };
-    made.iter().zip(time_s).map(|(made, at)| made + lasting(at)).collect()
-}
-
-/// Whether courses point to more than one direction and its opposite: of those a heading says no more than which of the two it is.
-fn turns(heading_rad: &[Vec<f64>]) -> bool {
-    /// Mean resultant length of the doubled angles beyond which all are of one line: within some 13° of it.
-    const ONE_LINE: f64 = 0.9;
-    let all = || heading_rad.iter().flatten();
-    let (north, east) = all().fold((0.0, 0.0), |(north, east), heading| {
-        (north + (2.0 * heading).cos(), east + (2.0 * heading).sin())
-    });
-    north.hypot(east) < ONE_LINE * all().count() as f64
-}
-
-/// Whether recorded speeds of the engine say more than the vehicle's: one that gears tie to the wheels turns as they do. They have
-/// to be those that the model is driven by, too.
-fn tells_more(case: &Case, engine_rad_s: &[Vec<f64>]) -> bool {
-    /// Share of its square that may follow the speed of the vehicle.
-    const TIED: f64 = 0.95;
-    let told = |run: &Recorded| inputs(&run.measured.trace, &run.measured.how).contains(&Inputs::EngineSpeed);
-    let pairs = || {
-        let speeds = case.runs.iter().flat_map(|run| &run.motion.value);
-        speeds.zip(engine_rad_s.iter().flatten()).map(|(v, n)| (v.abs(), *n))
-    };
-    let count = pairs().count().max(1) as f64;
-    let (v, n) = pairs().fold((0.0, 0.0), |(v, n), pair| (v + pair.0 / count, n + pair.1 / count));
-    let (vv, nn, vn) = pairs().fold((0.0, 0.0, 0.0), |(vv, nn, vn), pair| {
-        let (dv, dn) = (pair.0 - v, pair.1 - n);
-        (vv + dv * dv, nn + dn * dn, vn + dv * dn)
-    });
-    case.runs.iter().all(told) && nn > 0.0 && vn * vn < TIED * vv * nn
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{Sought, enough, turns};
+    use super::{Sought, enough};
     use crate::balance::Kind;
     use headland_symbolic::{Law, Target};
-
-    #[test]
-    fn to_and_fro_on_one_line_is_no_turn() {
-        let lane = vec![vec![0.3, 0.31, 0.29], vec![0.3 + std::f64::consts::PI; 3]];
-        assert!(!turns(&lane));
-        assert!(turns(&[vec![0.0, 0.5, 1.0, 1.5, 2.0, 2.5]]));
-    }
 
     #[test]
     fn a_loss_that_takes_all_that_a_force_rises_by_answers_with_itself() {

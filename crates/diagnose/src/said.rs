@@ -228,6 +228,8 @@ pub fn inputs(trace: &Trace, how: &Replay) -> Vec<Inputs> {
         Inputs::VerticalAcceleration,
         Inputs::AirTemperature,
         Inputs::OilTemperature,
+        Inputs::StateOfCharge,
+        Inputs::TyrePressure,
         Inputs::Heading,
         Inputs::EngineSpeed,
     ];

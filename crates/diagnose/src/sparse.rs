@@ -21,10 +21,11 @@ pub const SWITCHES: [&str; 4] = ["coasting", "brake", "heading_rad", "wind_direc
 /// Channels whose steps are told by themselves: a charge is counted in them, and a run has the rows in which its speed is new.
 const STEPS: [&str; 2] = ["speed_m_s", "state_of_charge"];
 /// What surrounds the vehicle, or is done with it, and changes slowly: a run is driven by it.
-const AROUND: [&str; 14] = [
+const AROUND: [&str; 15] = [
     "curvature_per_m",
     "air_temperature_c",
     "oil_temperature_c",
+    "tyre_pressure_pa",
     "heading_rad",
     "wind_speed_m_s",
     "wind_direction_rad",

@@ -699,6 +699,17 @@ fn a_drag_above_a_temperature_of_the_oil_is_found_as_an_equation() {
     assert!(said.findings[0].depends_on.contains(&"oil_temperature_c".to_owned()), "{}", said.answer);
 }
 
+/// Tyres that are let down and pumped up on the way roll the harder the softer they are.
+#[test]
+fn a_drag_by_the_pressure_of_the_tyres_is_found_as_an_equation() {
+    let pressure_pa = |t: f64, run: usize| 1.3e5 + 0.5e5 * (t / 9.0 + 1.3 * run as f64).sin();
+    let recording = dragged("tyre_pressure_pa", pressure_pa, |_, _, pa| 4000.0 * (-pa / 0.5e5).exp());
+    let found = found(&recording, &Options::default()).unwrap();
+    let said = &found.diagnosis;
+    assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);
+    assert!(said.findings[0].depends_on.contains(&"tyre_pressure_pa".to_owned()), "{}", said.answer);
+}
+
 /// A law that is many times what is left open of the drag area, and much like it: it is no other drag area, and says in one term what
 /// two listed laws would patch.
 #[test]

@@ -78,13 +78,13 @@ impl Plugin for Expression {
         name: "expression",
         about: "a force, a loss of the drive or a power as a formula of the situation",
         equation: "R, F, λ, P = + - * / ^ < <= > >= == != ( ) min max clamp abs sign sqrt pow exp ln log10 sin cos tanh latched of \
-                   v [m/s] acceleration [m/s²] F_drive [N] engine_speed [rad/s] x [m] way [m] t [s] heading [rad] kappa [1/m] slope [1] elevation [m] temperature [°C] oil_temperature [°C] m [kg] \
+                   v [m/s] acceleration [m/s²] F_drive [N] engine_speed [rad/s] x [m] way [m] t [s] heading [rad] kappa [1/m] slope [1] elevation [m] temperature [°C] oil_temperature [°C] state_of_charge [1] tyre_pressure [Pa] m [kg] \
                    g [m/s²] N [N] rho [kg/m³] area [m²] coasting [1] braking [1] headwind [m/s] crosswind [m/s] and \
                    constants",
         source: "the author of the scenario; empirical",
         validity: "units have to fit (a factor whose unit no name can say is written as quotients: p_w * (F_drive / f_n)^2); comparisons are 1 or 0; latched(u, on, off) is a switch that goes on at one value of u and off at another; way is the distance \
                    driven since the run began; slope is the sine, N = m g cos θ the normal load, the cross \
-                   wind comes from the right; oil_temperature has to be recorded; powers alone may name the acceleration and engine_speed, which forces make, powers and loss_share F_drive, the force of the drive before that loss; a force that is not finite stops the simulation, \
+                   wind comes from the right; oil_temperature and tyre_pressure have to be recorded, state_of_charge where the driveline has no battery; powers alone may name the acceleration and engine_speed, which forces make, powers and loss_share F_drive, the force of the drive before that loss; a force that is not finite stops the simulation, \
                    such a power leaves the drive without any",
         parameters: &[
             parameter(

@@ -51,6 +51,10 @@ pub struct Situation {
     pub engine_speed_rad_s: Option<f64>,
     /// Temperature of the driveline's oil [°C]; `None` where none was recorded.
     pub oil_temperature_c: Option<f64>,
+    /// Share of the battery's capacity that is left; `None` where the driveline has none and none was recorded.
+    pub state_of_charge: Option<f64>,
+    /// Inflation pressure of the tyres above ambient [Pa]; `None` where none was recorded.
+    pub tyre_pressure_pa: Option<f64>,
 }
 
 impl Air {

@@ -47,8 +47,12 @@ pub(crate) struct Given {
     pub shaking_m2_s4: Option<f64>,
     pub air: Option<Air>,
     pub oil_temperature_c: Option<f64>,
+    pub state_of_charge: Option<f64>,
+    pub tyre_pressure_pa: Option<f64>,
     pub auxiliary_power_w: Option<f64>,
     pub drawbar_force_n: Option<f64>,
+    pub pto_power_w: Option<f64>,
+    pub hydraulic_power_w: Option<f64>,
     /// What is carried beside the vehicle and its tasks [kg].
     pub payload_kg: f64,
     pub braking: bool,
@@ -425,6 +429,8 @@ impl Model {
             shaking_m2_s4: given.shaking_m2_s4,
             engine_speed_rad_s: None,
             oil_temperature_c: given.oil_temperature_c,
+            state_of_charge: given.state_of_charge,
+            tyre_pressure_pa: given.tyre_pressure_pa,
         }
     }
 
@@ -445,6 +451,7 @@ impl Model {
             drawbar_n: given.drawbar_force_n.unwrap_or(0.0),
             ..Sums::default()
         };
+        situation.state_of_charge = situation.state_of_charge.or(layout.charge.map(|charge| states[charge]));
         let mut carried_kg = given.payload_kg;
         let tasks = self.tasks.iter().zip(&layout.tasks);
         for ((task, range), mode) in tasks.zip(&scratch.modes) {
@@ -461,6 +468,9 @@ impl Model {
             }
             carried_kg += load.mass_kg;
         }
+        // What was recorded there is all that tasks took.
+        sums.pto_power_w = given.pto_power_w.unwrap_or(sums.pto_power_w);
+        sums.hydraulic_power_w = given.hydraulic_power_w.unwrap_or(sums.hydraulic_power_w);
         situation.mass_kg += carried_kg;
         self.ask(situation, layout, states, rates, scratch);
         let (mass_kg, area_m2) = scratch

@@ -207,7 +207,7 @@ impl Running<'_> {
                 }
                 Driver::Pi(pi) => {
                     let control =
-                        |at: &Moment| pi.follow(reference, piece, memory, at, hand.given(at.time_s));
+                        |at: &Moment| pi.follow(reference, piece, memory, at, &hand.given(at.time_s));
                     self.until(&control, ending, corner_s, hopeless)?
                 }
             };

@@ -82,12 +82,17 @@ pub struct Model {
     pub effects: Vec<Named<dyn Effect>>,
 }
 
+/// The state that drivelines with a battery call its charge.
+const CHARGE: &str = "state_of_charge";
+
 /// Where each plugin's states stand in the vector of all states.
 #[derive(Debug)]
 pub(crate) struct Layout {
     pub driveline: std::ops::Range<usize>,
     pub tasks: Vec<std::ops::Range<usize>>,
     pub effects: Vec<std::ops::Range<usize>>,
+    /// The charge of the driveline's battery; `None` where it has none.
+    pub charge: Option<usize>,
     /// What the driver remembers; `None` where the driver remembers nothing.
     pub driver: Option<usize>,
     /// Channel name and initial value of each state.
@@ -117,6 +122,7 @@ impl Model {
         let driveline = claim("", self.driveline.states());
         let tasks = self.tasks.iter().map(|task| claim(&task.name, task.plugin.states())).collect();
         let effects = self.effects.iter().map(|effect| claim(&effect.name, effect.plugin.states())).collect();
-        Layout { driveline, tasks, effects, driver: None, states }
+        let charge = states[driveline.clone()].iter().position(|(name, _)| name == CHARGE);
+        Layout { driveline, tasks, effects, charge, driver: None, states }
     }
 }

@@ -89,7 +89,7 @@ impl Pi {
         piece: usize,
         memory: Option<usize>,
         at: &Moment,
-        given: Given,
+        given: &Given,
     ) -> (Command, Given) {
         let (wanted, _) = reference.on(piece, at.time_s);
         let ahead = reference.speed_m_s(at.time_s + self.preview_s);
@@ -97,7 +97,7 @@ impl Pi {
         let integral = self.integral_per_s2 * gathered;
         let error = wanted - at.speed_m_s;
         let full = integral.abs() >= self.integral_limit_m_s2 && integral * error > 0.0;
-        let given = Given { driver_rate: if full { 0.0 } else { error }, ..given };
+        let given = Given { driver_rate: if full { 0.0 } else { error }, ..*given };
         (Command::Push(self.gain_per_s * (ahead - at.speed_m_s) + integral), given)
     }
 }

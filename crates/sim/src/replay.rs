@@ -60,8 +60,16 @@ pub enum Inputs {
     Wind,
     AirTemperature,
     OilTemperature,
+    /// For effects that follow it; what the battery of the model holds starts from it.
+    StateOfCharge,
+    TyrePressure,
     AuxiliaryPower,
+    /// At the hitch, beside what tasks pull with.
     DrawbarForce,
+    /// In the place of what tasks take from the power take-off.
+    PtoPower,
+    /// In the place of what tasks take from the remote hydraulics.
+    HydraulicPower,
     /// Mass that is carried beside that of the vehicle.
     Payload,
     Coasting,
@@ -73,7 +81,7 @@ pub enum Inputs {
 
 impl Inputs {
     /// Every circumstance that a model is told without being asked to.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 17] = [
         Self::Grade,
         Self::Heading,
         Self::Curvature,
@@ -82,8 +90,12 @@ impl Inputs {
         Self::Wind,
         Self::AirTemperature,
         Self::OilTemperature,
+        Self::StateOfCharge,
+        Self::TyrePressure,
         Self::AuxiliaryPower,
         Self::DrawbarForce,
+        Self::PtoPower,
+        Self::HydraulicPower,
         Self::Payload,
         Self::Coasting,
         Self::Brake,
@@ -100,8 +112,12 @@ impl Inputs {
             Self::Wind => &["wind_speed_m_s", "wind_direction_rad"],
             Self::AirTemperature => &["air_temperature_c"],
             Self::OilTemperature => &["oil_temperature_c"],
+            Self::StateOfCharge => &["state_of_charge"],
+            Self::TyrePressure => &["tyre_pressure_pa"],
             Self::AuxiliaryPower => &["auxiliary_power_w"],
             Self::DrawbarForce => &["drawbar_force_n"],
+            Self::PtoPower => &["pto_power_w"],
+            Self::HydraulicPower => &["hydraulic_power_w"],
             Self::Payload => &["payload_kg"],
             Self::Coasting => &["coasting"],
             Self::Brake => &["brake"],
@@ -274,8 +290,12 @@ impl<'a> Tape<'a> {
                     given.air.get_or_insert(model.air).temperature_c = value(0);
                 }
                 Inputs::OilTemperature => given.oil_temperature_c = Some(value(0)),
+                Inputs::StateOfCharge => given.state_of_charge = Some(value(0)),
+                Inputs::TyrePressure => given.tyre_pressure_pa = Some(value(0)),
                 Inputs::AuxiliaryPower => given.auxiliary_power_w = Some(value(0)),
                 Inputs::DrawbarForce => given.drawbar_force_n = Some(value(0)),
+                Inputs::PtoPower => given.pto_power_w = Some(value(0)),
+                Inputs::HydraulicPower => given.hydraulic_power_w = Some(value(0)),
                 Inputs::Payload => given.payload_kg = value(0),
                 Inputs::Coasting => coasting = columns[0][index] >= 0.5,
                 Inputs::Brake => given.braking = columns[0][index] >= 0.5,
@@ -287,8 +307,7 @@ impl<'a> Tape<'a> {
 
     fn adopt_charge(&self, machine: &mut Machine, index: usize) {
         let Some(charge) = self.state_of_charge else { return };
-        let state = machine.layout.states.iter().position(|(name, _)| name == "state_of_charge");
-        if let Some(state) = state
+        if let Some(state) = machine.layout.charge
             && charge[index].is_finite()
         {
             machine.set_state(state, charge[index]);

@@ -26,7 +26,7 @@ const BATTERY: (&str, &str) = (
 );
 
 /// Each effect with parameters that show, and a channel in which they show: on the car, or on the tractor.
-const EFFECTS: [(&str, &str, &str); 39] = [
+const EFFECTS: [(&str, &str, &str); 40] = [
     ("wind", "(speed_m_s: 4.0, from_rad: 0.5)", "tractive_force_n"),
     ("grade", "(positions_m: [0.0, 40.0, 90.0], grades: [0.0, 0.03, -0.01])", "tractive_force_n"),
     ("grade_constant", "(grade: 0.02)", "tractive_force_n"),
@@ -80,6 +80,11 @@ const EFFECTS: [(&str, &str, &str); 39] = [
     (
         "expression",
         "(auxiliary_power: \"p_w * (F_drive / f1_n)^2\", constants: {\"p_w\": 1000.0, \"f1_n\": 5000.0})",
+        "battery_current_a",
+    ),
+    (
+        "expression",
+        "(auxiliary_power: \"p_w * (state_of_charge - s)\", constants: {\"p_w\": 1000.0, \"s\": 0.3})",
         "battery_current_a",
     ),
     (
@@ -223,12 +228,48 @@ fn what_an_effect_did_is_found_again_from_the_force_that_it_took() {
     }
 }
 
+/// Whatever power the tasks of the model would take, one that was recorded is all that is taken there: the fuel is that of the drive in
+/// which tasks took as much.
+#[test]
+fn powers_that_were_recorded_stand_in_the_place_of_what_tasks_take() {
+    let with_tasks = |powers_w: [f64; 2]| {
+        let (registry, mut model) = (registry(), model(true, &[]));
+        for (name, power_w) in ["PtoPower", "Hydraulic"].into_iter().zip(powers_w) {
+            let plugin =
+                registry.tasks.build(name, &format!("(power_w: {power_w:?})"), Path::new(".")).unwrap();
+            model.tasks.push(Named { name: name.to_owned(), plugin });
+        }
+        model
+    };
+    let original = drive(&with_tasks([25e3, 9e3]));
+    let burnt = |model: &Model, also: Vec<Inputs>| {
+        let how = Replay {
+            drive: Drive::Speed,
+            also,
+            window_s: None,
+            smoothing_s: 0.021,
+            step_s: 0.01,
+            reversed_from_m: None,
+        };
+        at_time(&replay(model, &original.trace, &how).unwrap(), "fuel_rate_kg_s", 3.2)
+    };
+    let took = at_time(&original, "fuel_rate_kg_s", 3.2);
+    let told = vec![Inputs::PtoPower, Inputs::HydraulicPower];
+    for others in [with_tasks([4e3, 5e3]), model(true, &[])] {
+        assert!((burnt(&others, told.clone()) / took - 1.0).abs() < 1e-3, "{took}");
+        assert!((burnt(&others, Vec::new()) / took - 1.0).abs() > 0.02, "{took}");
+    }
+}
+
 #[test]
 fn all_effects_at_once_close_the_ledger() {
     for engine in [false, true] {
         let all: Vec<(&str, &str)> = EFFECTS
             .iter()
-            .filter(|(name, ..)| *name != "turbo_lag")
+            .filter(|(name, parameters, _)| {
+                // A tractor has no charge that a consumer could follow.
+                *name != "turbo_lag" && !(engine && parameters.contains("state_of_charge"))
+            })
             .map(|(name, parameters, _)| (*name, *parameters))
             .collect();
         let outcome = drive(&model(engine, &all));

@@ -236,6 +236,8 @@ mod tests {
                 braking: index % 5 == 0,
                 engine_speed_rad_s: Some(120.0 + 0.7 * k),
                 oil_temperature_c: Some(35.0 + 0.2 * k),
+                state_of_charge: Some(0.9 - 0.004 * k),
+                tyre_pressure_pa: Some(1.6e5 - 700.0 * k),
                 ..Situation::default()
             }
         };
@@ -263,6 +265,8 @@ mod tests {
             "elevation" => at.place.elevation_m,
             "temperature" => at.air.temperature_c,
             "oil_temperature" => at.oil_temperature_c.unwrap_or(f64::NAN),
+            "state_of_charge" => at.state_of_charge.unwrap_or(f64::NAN),
+            "tyre_pressure" => at.tyre_pressure_pa.unwrap_or(f64::NAN),
             "m" => at.mass_kg,
             "g" => at.gravity_m_s2,
             "N" => at.mass_kg * at.gravity_m_s2 * at.place.cos_slope(),

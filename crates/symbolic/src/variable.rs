@@ -72,7 +72,7 @@ const ENGINE_SPEED: &str = "engine_speed";
 pub(crate) const DRIVE: &str = "F_drive";
 
 /// Everything that may stand in a law.
-pub(crate) const KNOWN: [Known; 22] = [
+pub(crate) const KNOWN: [Known; 24] = [
     known("v", "m/s", "_m_s", Kind::Size),
     known(ACCELERATION, "m/s²", "_m_s2", Kind::Signed),
     known(ENGINE_SPEED, "rad/s", "_rad_s", Kind::Size),
@@ -86,6 +86,8 @@ pub(crate) const KNOWN: [Known; 22] = [
     known("elevation", "m", "_m", Kind::Level),
     Known { name: "temperature", unit: "°C", value_ending: "_c", scale_ending: "_k", kind: Kind::Level },
     Known { name: "oil_temperature", unit: "°C", value_ending: "_c", scale_ending: "_k", kind: Kind::Level },
+    known("state_of_charge", "1", "", Kind::Level),
+    known("tyre_pressure", "Pa", "_pa", Kind::Level),
     known("m", "kg", "_kg", Kind::Weight),
     known("g", "m/s²", "_m_s2", Kind::Weight),
     known("N", "N", "_n", Kind::Weight),

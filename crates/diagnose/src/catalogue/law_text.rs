@@ -5,7 +5,7 @@ use crate::balance::Kind;
 use headland_symbolic::Target;
 
 /// Channels that the variables of a formula are read from.
-pub const CHANNELS: [(&str, &str); 15] = [
+pub const CHANNELS: [(&str, &str); 17] = [
     ("v", "speed_m_s"),
     ("acceleration", "acceleration_m_s2"),
     ("F_drive", "tractive_force_n"),
@@ -16,6 +16,8 @@ pub const CHANNELS: [(&str, &str); 15] = [
     ("kappa", "curvature_per_m"),
     ("temperature", "air_temperature_c"),
     ("oil_temperature", "oil_temperature_c"),
+    ("state_of_charge", "state_of_charge"),
+    ("tyre_pressure", "tyre_pressure_pa"),
     ("coasting", "coasting"),
     ("slope", "grade"),
     ("m", "payload_kg"),

@@ -28,6 +28,8 @@ fn situation() -> Situation {
         braking: false,
         engine_speed_rad_s: Some(130.0),
         oil_temperature_c: Some(70.0),
+        state_of_charge: Some(0.6),
+        tyre_pressure_pa: Some(1.2e5),
         ..Situation::default()
     }
 }
@@ -48,8 +50,8 @@ fn refused(text: &str) -> String {
 #[test]
 fn every_variable_is_what_its_name_says() {
     let expected = [
-        10.0, 0.7, 450.0, 130.0, 120.0, 50.0, 0.5, 0.02, 0.6, 300.0, -5.0, 70.0, 2000.0, 9.81, 15_696.0, 1.2,
-        3.0, 1.0, 0.0,
+        10.0, 0.7, 450.0, 130.0, 120.0, 50.0, 0.5, 0.02, 0.6, 300.0, -5.0, 70.0, 0.6, 1.2e5, 2000.0, 9.81,
+        15_696.0, 1.2, 3.0, 1.0, 0.0,
     ];
     let expected = expected.into_iter().chain([4.0 * 1f64.cos(), 4.0 * 1f64.sin()]);
     assert_eq!(VARIABLES.len(), expected.clone().count());

@@ -8,6 +8,7 @@ use crate::prove::{Errors, improved};
 use crate::recorded::Recorded;
 use crate::refine::Refined;
 use crate::{Case, DiagnoseError};
+use headland_calibrate::statistics::mean;
 use headland_sim::{Model, Replay, replay};
 use headland_trace::Channel;
 use rayon::prelude::*;
@@ -35,10 +36,6 @@ pub fn windows_s(
     let of_run = |place: usize| {
         let run = &runs[place];
         let mut window_s = usual_window_s(run);
-        // Nothing that was found makes a force fall.
-        if refined.causes.is_empty() {
-            return Ok(window_s);
-        }
         while parts(case, run, refined, (place, window_s))?.is_some_and(|times| times > APART) {
             let shorter = 0.5 * window_s.unwrap_or(run.measured.trace.duration_s());
             if shorter < SHORTEST_S {
@@ -49,6 +46,35 @@ pub fn windows_s(
         Ok(window_s)
     };
     (0..runs.len()).into_par_iter().map(of_run).collect()
+}
+
+/// Shorter windows of runs whose forces agree with what was found, row by row, and whose speed driven forward does not: a vehicle that is
+/// caught where the recorded one just passed, or the other way round, says nothing of what pushed it before. `rows` are the errors
+/// of the balance, which hold more of the noise.
+pub fn agreeing(
+    case: &Case,
+    runs: &[Recorded],
+    refined: &Refined,
+    mut windows_s: Vec<Option<f64>>,
+    rows: &[Errors],
+) -> Result<Vec<Option<f64>>, DiagnoseError> {
+    /// Share of an error beyond which it is hardly less.
+    const HARDLY: f64 = 0.5;
+    let left = |errors: &Errors| errors.after / errors.before;
+    loop {
+        let forward = speeds(case, runs, refined, &windows_s)?;
+        let mut any = false;
+        for (place, (forward, rows)) in forward.iter().zip(rows).enumerate() {
+            let half_s = 0.5 * windows_s[place].unwrap_or(runs[place].measured.trace.duration_s());
+            if left(forward) > HARDLY.max(left(rows)) && half_s >= SHORTEST_S {
+                windows_s[place] = Some(half_s);
+                any = true;
+            }
+        }
+        if !any {
+            return Ok(windows_s);
+        }
+    }
 }
 
 /// By how many times two speeds part on the way, as a root mean square; none where the run cannot be driven forward.
@@ -63,16 +89,22 @@ fn parts(
     let Some(drive) = run.shown_forward() else { return Ok(None) };
     let model = case.study.model_of(&improved(case, refined, place)?, &run.measured, &refined.values())?;
     let how = Replay { drive, window_s, ..run.measured.how.clone() };
-    let mut beside = run.clone();
-    let trace = &mut beside.measured.trace;
-    let Some(Channel { name, values, origin }) = trace.remove("speed_m_s") else { return Ok(None) };
-    let Ok(()) = trace.push(name, values.iter().map(|speed| speed + BEGIN_M_S).collect(), origin) else {
-        return Ok(None);
-    };
-    let (one, other) = (modelled(&model, run, &how)?, modelled(&model, &beside, &how)?);
-    let apart = one.iter().zip(&other).map(|(one, other)| ((other - one) / BEGIN_M_S).powi(2));
-    let apart: Vec<f64> = apart.filter(|square| square.is_finite()).collect();
-    Ok((!apart.is_empty()).then(|| (apart.iter().sum::<f64>() / apart.len() as f64).sqrt()))
+    let own = modelled(&model, run, &how)?;
+    let mut most: Option<f64> = None;
+    // What a faster vehicle passes may hold a slower one.
+    for begin_m_s in [-BEGIN_M_S, BEGIN_M_S] {
+        let mut beside = run.clone();
+        let trace = &mut beside.measured.trace;
+        let Some(Channel { name, values, origin }) = trace.remove("speed_m_s") else { return Ok(None) };
+        let moved = values.iter().map(|speed| speed + begin_m_s).collect();
+        let Ok(()) = trace.push(name, moved, origin) else { return Ok(None) };
+        let other = modelled(&model, &beside, &how)?;
+        let apart = own.iter().zip(&other).map(|(one, other)| ((other - one) / begin_m_s).powi(2));
+        let apart: Vec<f64> = apart.filter(|square| square.is_finite()).collect();
+        let times = (!apart.is_empty()).then(|| mean(&apart).sqrt());
+        most = most.into_iter().chain(times).reduce(f64::max);
+    }
+    Ok(most)
 }
 
 /// The speed that a model makes of what drove a run, sample by sample [m/s].

@@ -3,7 +3,7 @@
 use crate::balance::{Kind, System, change};
 use crate::catalogue::{Class, Form};
 use crate::events::Event;
-use crate::forward::{speed_noise, speeds, usual_window_s, windows_s};
+use crate::forward::{agreeing, speed_noise, speeds, usual_window_s, windows_s};
 use crate::gram::Column;
 use crate::recorded::Recorded;
 use crate::refine::{Cured, Refined, said_with_all};
@@ -82,7 +82,15 @@ impl Measure {
     pub fn of(case: &Case, system: &System, refined: &Refined) -> Result<Self, DiagnoseError> {
         let kind = told_by(system, refined);
         let windows_s = match kind {
-            Kind::Motion => windows_s(case, &corrected_by(case, refined)?, refined)?,
+            Kind::Motion if refined.causes.is_empty() => case.runs.iter().map(usual_window_s).collect(),
+            Kind::Motion => {
+                let runs = corrected_by(case, refined)?;
+                let told = refined.causes.iter().map(|cured| reconstruct(case, system, cured, refined));
+                let told = told.collect::<Result<Vec<_>, _>>()?;
+                let rows = rows(case, system, &runs, refined, &told, kind)?;
+                let windows_s = windows_s(case, &runs, refined)?;
+                agreeing(case, &runs, refined, windows_s, &rows)?
+            }
             _ => case.runs.iter().map(usual_window_s).collect(),
         };
         Ok(Self { kind, windows_s })
@@ -406,6 +414,10 @@ fn rows(
                     values.iter().map(|value| -value / mass(run).unwrap_or(f64::INFINITY)).collect()
                 };
                 effect.runs.iter().enumerate().map(of_run).collect()
+            }
+            // What drives the vehicle is missing in the force that its motion asks for.
+            (true, "n") if kind == Kind::Motion => {
+                effect.runs.iter().map(|values| values.iter().map(|value| -value).collect()).collect()
             }
             // More resistance is told as the power that it loses, and read by the voltage.
             (true, _) if kind == Kind::Voltage => {

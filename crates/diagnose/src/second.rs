@@ -15,6 +15,8 @@ use crate::{DiagnoseError, Options};
 const MAP: &str = "soft_ground";
 /// What is late by the clock.
 const CLOCK: &str = "clock_drift";
+/// What is late all along, which a clock that runs apart does the rest of.
+const LATE: &str = "latency";
 /// What goes with all of a force, or of a speed.
 const SCALES: [&str; 2] = ["force_scale", "speed_scale"];
 /// A map with one value.
@@ -24,8 +26,9 @@ const MORE_THAN_NOISE: f64 = 1.5;
 /// The error with another set of causes has to be less than this share of what it is with the first.
 const BETTER: f64 = 0.85;
 
-/// What the runs are to be looked at without: of some findings that leave so many times the noise.
-fn doubtful(findings: &[FindingReport], lack_of_fit: f64) -> Vec<&'static str> {
+/// What the runs are to be looked at without, one after the other, the doubtful one first: of some findings that leave so many times the
+/// noise.
+fn doubtful(findings: &[FindingReport], lack_of_fit: f64) -> Vec<Vec<&'static str>> {
     let leaves = lack_of_fit > MORE_THAN_NOISE;
     let found = |id: &str| findings.iter().find(|finding| finding.id == id);
     let level = |map: &FindingReport| map.indistinguishable_from.iter().any(|rival| rival.id == LEVEL);
@@ -35,7 +38,9 @@ fn doubtful(findings: &[FindingReport], lack_of_fit: f64) -> Vec<&'static str> {
     let clock = (leaves && found(CLOCK).is_some_and(sought)).then_some(CLOCK);
     let physics = findings.iter().any(|finding| finding.kind != FindingKind::Artefact);
     let scales = SCALES.into_iter().filter(|scale| physics && found(scale).is_some_and(sought));
-    map.into_iter().chain(clock).chain(scales).collect()
+    // Both together follow what pushes a vehicle to and fro.
+    let both = clock.filter(|_| found(LATE).is_some_and(sought)).map(|clock| vec![clock, LATE]);
+    map.into_iter().chain(clock).chain(scales).map(|id| vec![id]).chain(both).collect()
 }
 
 /// A map follows the runs that it was made of; what stands in its place may leave so many times the error in those.
@@ -44,15 +49,17 @@ const FOLLOWS: f64 = 1.4;
 /// Whether runs are told better by another set of causes: those held out, and those fitted no worse, but for what `id` follows.
 fn is_better(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
     let claims = !other.findings.is_empty() && other.verdict != Verdict::None;
-    let errors = |fit: &Fit| -> (f64, f64) {
-        let after = |runs: &FitRuns| runs.rmse_after;
-        (after(&fit.fitted), fit.held_out.as_ref().map_or_else(|| after(&fit.fitted), after))
-    };
+    let errors = |fit: &Fit| (left(&fit.fitted), left(fit.held_out.as_ref().unwrap_or(&fit.fitted)));
     let ((fitted, held_out), (fitted_first, held_out_first)) = (errors(&other.fit), errors(&first.fit));
     claims
         && other.fit.signal == first.fit.signal
         && held_out < BETTER * held_out_first
         && fitted < fitted_first * if id == MAP { FOLLOWS } else { 1.0 }
+}
+
+/// Share of the error that is left. What is driven forward in windows of another length has another error before, too.
+fn left(runs: &FitRuns) -> f64 {
+    runs.rmse_after / runs.rmse_before
 }
 
 /// Whether another opinion takes the place of the first, in which `id` was doubtful. A clock that runs apart is one thing, and so is a
@@ -61,14 +68,14 @@ fn is_better(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
 fn wins(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
     let is_scale = SCALES.contains(&id);
     let patches = (id == CLOCK || is_scale) && other.findings.len() > first.findings.len();
-    let held_out = |one: &Diagnosis| Some((one.findings.len(), one.fit.held_out.as_ref()?.rmse_after));
+    let held_out = |one: &Diagnosis| Some((one.findings.len(), left(one.fit.held_out.as_ref()?)));
     let plainer = held_out(other).zip(held_out(first)).is_some_and(|(other, first)| is_plainer(other, first));
     let better = is_better(id, other, first) || is_scale && plainer;
     better && !patches && !is_renamed(id, &other.findings, &first.findings)
 }
 
 /// Whether fewer causes, but not none, tell the runs held out no worse: a sensor at fault is then one cause too many. Each by their number
-/// and the error that they leave.
+/// and the share of the error that they leave.
 fn is_plainer((others, error): (usize, f64), (first, error_first): (usize, f64)) -> bool {
     (1..first).contains(&others) && error <= error_first
 }
@@ -89,10 +96,10 @@ pub fn opinion(
     look: impl Fn(&Options) -> Result<Diagnosed, DiagnoseError>,
 ) -> Result<Diagnosed, DiagnoseError> {
     let mut best = first;
-    for id in doubtful(&best.diagnosis.findings, best.diagnosis.fit.lack_of_fit) {
-        let without = options.without.iter().cloned().chain([id.to_owned()]).collect();
+    for ids in doubtful(&best.diagnosis.findings, best.diagnosis.fit.lack_of_fit) {
+        let without = options.without.iter().cloned().chain(ids.iter().map(|id| (*id).to_owned())).collect();
         match look(&Options { without, ..options.clone() }) {
-            Ok(other) if wins(id, &other.diagnosis, &best.diagnosis) => best = other,
+            Ok(other) if wins(ids[0], &other.diagnosis, &best.diagnosis) => best = other,
             // Nothing else may have been asked for.
             Ok(_) | Err(DiagnoseError::NoBalance { .. }) => {}
             Err(error) => return Err(error),
@@ -121,7 +128,7 @@ mod tests {
     fn a_scale_beside_physics_is_looked_at_once_more() {
         for scale in SCALES {
             let own = || finding(Artefact, scale, None);
-            assert_eq!(doubtful(&[own(), finding(Physics, "rolling_speed_law", None)], 1.0), [scale]);
+            assert_eq!(doubtful(&[own(), finding(Physics, "rolling_speed_law", None)], 1.0), [[scale]]);
             assert!(doubtful(&[own(), finding(Artefact, "quantisation", None)], 1.0).is_empty());
         }
         // Fewer causes have to be some, and leave no more.

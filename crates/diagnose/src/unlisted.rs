@@ -139,6 +139,12 @@ fn candidates(
     if wanders && rows <= LONG_ROWS && sought.target != Target::Share {
         starts.extend(without_each(case, &listed, sought.kind));
     }
+    // What differs from run to run for no reason may do so by what each run was driven in.
+    let reasons: Vec<Part> =
+        listed.iter().filter(|part| !case.causes[part.trial.cause].by_run).cloned().collect();
+    if !reasons.is_empty() && reasons.len() < listed.len() && rows <= MANY_ROWS {
+        starts.push(reasons);
+    }
     if !listed.is_empty() {
         starts.push(listed);
     }
@@ -365,6 +371,12 @@ impl State<'_> {
             cause.by_run || over_time || kept || self.is_elsewhere(part, stand, &found.stand)
         };
         let (shapeless, shaped): (Vec<Part>, Vec<Part>) = found.stand.parts.iter().cloned().partition(any);
+        // Beside all that has a shape a law says why runs differ.
+        let named = |part: &Part| stand.parts.iter().any(|own| self.id(&own.trial) == self.id(&part.trial));
+        let by_run = |part: &Part| self.cause(&part.trial).by_run;
+        if shaped.iter().all(named) && shapeless.iter().any(|part| by_run(part) && !named(part)) {
+            return MARGIN;
+        }
         let alone = if shapeless.is_empty() { None } else { self.settle(&shapeless, &found.stand.noises) };
         let brought = worth(&found.stand) - worth(alone.as_ref().unwrap_or(&found.first));
         let shaped = shaped.len();

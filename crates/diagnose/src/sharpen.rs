@@ -58,6 +58,15 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
             consider(*cause, shape);
         }
     }
+    // Bells at some speeds follow teeth between others, which a grid of few speeds shows hardly any of.
+    let by_speeds = |cause: usize| case.causes[cause].speeds() > 0;
+    if let Some(own) = found.accepted.iter().find(|one| by_speeds(one.trial.cause)) {
+        let own = case.causes[own.trial.cause].id;
+        let mut others = round.causes.iter().filter(|one| by_speeds(one.0) && case.causes[one.0].id != own);
+        if let Some((cause, shape, _)) = others.next() {
+            consider(*cause, shape);
+        }
+    }
     // A window of the grid begins and ends seconds beside the one that is there, and each edge beside its place costs it dearly.
     // Where there are many rows that takes long, and their windows are long as well.
     let few = system.row_count() <= MANY_ROWS;

@@ -4,7 +4,7 @@
 
 use crate::shape::{Factor, Shape};
 use crate::term::Term;
-use crate::variable::{ACCELERATION, Checked, Kind};
+use crate::variable::{ACCELERATION, Checked, DRIVE, Kind};
 
 /// Powers of a size. Sources of the halves: rolling in soil and flow through gaps have such exponents.
 const POWERS: [f64; 5] = [0.5, 1.0, 1.5, 2.0, 3.0];
@@ -131,6 +131,13 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
             // Where a speed is held, the noise of the force decides on the sign of an acceleration.
             if of.known.name != ACCELERATION {
                 curved(&mut all, &[Shape::Tanh], of.size());
+            }
+            // A coupling that locks above a force.
+            if of.known.name == DRIVE {
+                for share in CENTRES {
+                    let centre = of.low + share * of.spread();
+                    all.extend(EDGES.map(|width| make(Shape::Step, width * of.spread(), centre)));
+                }
             }
             all.extend(
                 CENTRES.map(|share| make(Shape::Above(1), of.round_size(), of.low + share * of.spread())),

@@ -112,6 +112,15 @@ fn a_wave_along_the_path_is_found_as_an_equation_that_runs() {
     is_found_as_a_law(WAVE, &to_and_fro(recorded(0.069, WAVE)));
 }
 
+/// Waves that slow a vehicle down until it hardly passes the next crest, or does not: driven forward, it may be caught where the one
+/// that was recorded was not.
+#[test]
+fn a_wave_that_may_catch_the_vehicle_is_proven_by_what_it_does_before() {
+    const STEEP: &str =
+        r#"expression(resistance: "a_n * cos(x / l_m)", constants: {"a_n": 9000.0, "l_m": 1.7})"#;
+    is_found_as_a_law(STEEP, &to_and_fro(recorded(0.069, STEEP)));
+}
+
 /// Waves of a road that was driven one way are slopes by their name, however short the formula that draws them.
 #[test]
 fn a_wave_that_was_driven_one_way_is_not_told_from_slopes() {
@@ -219,6 +228,29 @@ fn a_loss_that_goes_with_drive_and_speed_is_found_as_a_share_of_the_drive() {
             model.effects.iter().map(|one| one.plugin.act(&situation, &[], &mut []).loss_share).sum();
         let truth = SHARE * speed_m_s / AT_M_S;
         assert!((told / truth - 1.0).abs() < 0.1, "{speed_m_s} m/s: {told}, {truth}: {}", said.answer);
+    }
+}
+
+/// A coupling that locks above a force loses a share of it there, and nothing below.
+#[test]
+fn a_loss_above_a_force_is_found_as_a_share_of_the_drive() {
+    const SHARE: f64 = 0.12;
+    const ABOVE_N: f64 = 11e3;
+    let hidden = format!(
+        r#"expression(loss_share: "n * (F_drive > f_n)", constants: {{"n": {SHARE}, "f_n": {ABOVE_N}}})"#
+    );
+    let found = found(&recorded(0.069, &hidden), &Options::default()).unwrap();
+    let said = &found.diagnosis;
+    assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);
+    assert!(said.findings[0].depends_on.contains(&"tractive_force_n".to_owned()), "{}", said.answer);
+    let registry = headland_stock::registry();
+    let improved = Scenario::of_text("improved.ron", &found.scenarios[0], Path::new(""), &registry).unwrap();
+    let model = improved.model(&registry).unwrap();
+    for (tractive_force_n, truth) in [(9e3, 0.0), (13e3, SHARE)] {
+        let situation = Situation { tractive_force_n, ..Situation::default() };
+        let told: f64 =
+            model.effects.iter().map(|one| one.plugin.act(&situation, &[], &mut []).loss_share).sum();
+        assert!((told - truth).abs() < 0.1 * SHARE, "{tractive_force_n} N: {told}: {}", said.answer);
     }
 }
 
@@ -703,11 +735,26 @@ fn a_drag_above_a_temperature_of_the_oil_is_found_as_an_equation() {
 #[test]
 fn a_drag_by_the_pressure_of_the_tyres_is_found_as_an_equation() {
     let pressure_pa = |t: f64, run: usize| 1.3e5 + 0.5e5 * (t / 9.0 + 1.3 * run as f64).sin();
-    let recording = dragged("tyre_pressure_pa", pressure_pa, |_, _, pa| 4000.0 * (-pa / 0.5e5).exp());
+    let recording = dragged("tyre_pressure_pa", pressure_pa, |v, _, pa| 1500.0 * v * (-pa / 0.5e5).exp());
     let found = found(&recording, &Options::default()).unwrap();
     let said = &found.diagnosis;
     assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);
     assert!(said.findings[0].depends_on.contains(&"tyre_pressure_pa".to_owned()), "{}", said.answer);
+}
+
+/// The same where each run has a pressure of its own: levels that differ for no reason say as much in more numbers.
+#[test]
+fn levels_of_runs_that_a_pressure_says_are_told_by_it() {
+    const PRESSURES_PA: [f64; 5] = [0.8e5, 1.9e5, 1.1e5, 1.5e5, 0.9e5];
+    let pressure_pa = |_: f64, run: usize| PRESSURES_PA[run % PRESSURES_PA.len()];
+    let recording = dragged("tyre_pressure_pa", pressure_pa, |v, _, pa| 1500.0 * v * (-pa / 0.5e5).exp());
+    let found = found(&recording, &Options::default()).unwrap();
+    let said = &found.diagnosis;
+    assert!(
+        said.findings.iter().any(|one| one.depends_on.contains(&"tyre_pressure_pa".to_owned())),
+        "{}",
+        said.answer
+    );
 }
 
 /// A law that is many times what is left open of the drag area, and much like it: it is no other drag area, and says in one term what

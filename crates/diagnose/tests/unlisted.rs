@@ -112,15 +112,6 @@ fn a_wave_along_the_path_is_found_as_an_equation_that_runs() {
     is_found_as_a_law(WAVE, &to_and_fro(recorded(0.069, WAVE)));
 }
 
-/// Waves that slow a vehicle down until it hardly passes the next crest, or does not: driven forward, it may be caught where the one
-/// that was recorded was not.
-#[test]
-fn a_wave_that_may_catch_the_vehicle_is_proven_by_what_it_does_before() {
-    const STEEP: &str =
-        r#"expression(resistance: "a_n * cos(x / l_m)", constants: {"a_n": 9000.0, "l_m": 1.7})"#;
-    is_found_as_a_law(STEEP, &to_and_fro(recorded(0.069, STEEP)));
-}
-
 /// Waves of a road that was driven one way are slopes by their name, however short the formula that draws them.
 #[test]
 fn a_wave_that_was_driven_one_way_is_not_told_from_slopes() {
@@ -324,6 +315,29 @@ fn speed_and_fuel(fuel_noise_kg_s: f64) -> impl Fn(&str, f64, &mut Draws) -> f64
         "fuel_rate_kg_s" => value + fuel_noise_kg_s * draws.normal(),
         _ => value,
     }
+}
+
+/// The teeth of a variator between points that lie off any grid: bells at some speeds follow them, which changes of range would be.
+#[test]
+fn teeth_of_a_variator_are_no_changes_of_range() {
+    const NODES_M_S: [f64; 2] = [2.3, 4.9];
+    let hidden = format!("variator_loss(loss: 0.25, node_speeds_m_s: {NODES_M_S:?}, upstream: true)");
+    let registry = headland_stock::registry();
+    let speed_and_fuel = speed_and_fuel(1e-5);
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "tractive_force_n" => value + 100.0 * draws.normal(),
+        _ => speed_and_fuel(name, value, draws),
+    };
+    let channels = ["speed_m_s", "tractive_force_n", "fuel_rate_kg_s"];
+    let recording = recording_of_scenario(&with_an_engine(&hidden), &registry, &channels, (5, &noisy));
+    let found = found_of_scenario(&with_an_engine(""), &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    let variator = said.findings.iter().find(|one| one.id == "variator_loss");
+    let variator = variator.unwrap_or_else(|| panic!("{}", said.answer));
+    let nodes: Vec<f64> = variator.parameters.iter().skip(1).map(|one| one.value).collect();
+    let near = |node: &f64| nodes.iter().any(|told| (told - node).abs() < 0.2);
+    assert!(NODES_M_S.iter().all(near), "{nodes:?}: {}", said.answer);
+    assert!(said.findings.iter().all(|one| one.id != "shift_transient"), "{}", said.answer);
 }
 
 /// A fan that takes over where no wind cools any more, and only fuel tells of it.

@@ -85,9 +85,7 @@ impl Measure {
             Kind::Motion if refined.causes.is_empty() => case.runs.iter().map(usual_window_s).collect(),
             Kind::Motion => {
                 let runs = corrected_by(case, refined)?;
-                let told = refined.causes.iter().map(|cured| reconstruct(case, system, cured, refined));
-                let told = told.collect::<Result<Vec<_>, _>>()?;
-                let rows = rows(case, system, &runs, refined, &told, kind)?;
+                let rows = rows(case, system, &runs, refined, &told(case, system, refined)?, kind)?;
                 let windows_s = windows_s(case, &runs, refined)?;
                 agreeing(case, &runs, refined, windows_s, &rows)?
             }
@@ -111,9 +109,7 @@ pub fn prove(
         .iter()
         .map(|cured| reconstruct(case, system, &cured.along(), refined))
         .collect::<Result<Vec<_>, _>>()?;
-    // What a run tells of itself is no proof on it: errors are those with what the fitted runs told.
-    let told = refined.causes.iter().map(|cured| reconstruct(case, system, cured, refined));
-    let told = told.collect::<Result<Vec<_>, _>>()?;
+    let told = told(case, system, refined)?;
     let mut kind = measure.kind;
     let mut signal = None;
     if kind == Kind::Motion {
@@ -143,6 +139,11 @@ pub fn prove(
         effects,
         scenarios: scenarios(case, refined)?,
     })
+}
+
+/// Every cause as the fitted runs told it: what a run tells of itself is no proof on it.
+fn told(case: &Case, system: &System, refined: &Refined) -> Result<Vec<Reconstructed>, DiagnoseError> {
+    refined.causes.iter().map(|cured| reconstruct(case, system, cured, refined)).collect()
 }
 
 /// The recordings without the faults of sensors that were found.

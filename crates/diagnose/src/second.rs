@@ -110,7 +110,7 @@ pub fn opinion(
 
 #[cfg(test)]
 mod tests {
-    use super::{LEVEL, MAP, SCALES, doubtful, is_plainer, is_renamed};
+    use super::{CLOCK, LATE, LEVEL, MAP, SCALES, doubtful, is_plainer, is_renamed};
     use crate::report::FindingKind::{Artefact, Physics};
     use crate::report::finding;
 
@@ -123,6 +123,16 @@ mod tests {
         assert!(!is_renamed(MAP, &slopes, &[finding(Physics, MAP, None)]));
         assert!(!is_renamed(MAP, &[finding(Physics, LEVEL, None)], &first));
     }
+
+    /// One that drifts is looked at without the clock, and beside a late speed without both.
+    #[test]
+    fn a_clock_that_drifts_beside_a_late_speed_is_doubted_with_it() {
+        let own = |id: &'static str| finding(Artefact, id, None);
+        assert_eq!(doubtful(&[own(LATE), own(CLOCK)], 9.0), [vec![CLOCK], vec![CLOCK, LATE]]);
+        assert_eq!(doubtful(&[own(CLOCK)], 9.0), [vec![CLOCK]]);
+        assert!(doubtful(&[own(LATE), own(CLOCK)], 1.0).is_empty() && doubtful(&[own(LATE)], 9.0).is_empty());
+    }
+
     /// A sensor at fault by itself is one, and beside physics it may be what no listed cause said.
     #[test]
     fn a_scale_beside_physics_is_looked_at_once_more() {

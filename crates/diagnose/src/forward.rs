@@ -4,6 +4,7 @@
 //! speed, as friction does that breaks loose, two speeds that begin next to each other part: the window is then no longer than
 //! they take to be a few times as far apart, and the force is what is judged and not the luck of the first sample.
 
+use crate::catalogue::LawText;
 use crate::prove::{Errors, improved};
 use crate::recorded::Recorded;
 use crate::refine::Refined;
@@ -48,9 +49,9 @@ pub fn windows_s(
     (0..runs.len()).into_par_iter().map(of_run).collect()
 }
 
-/// Shorter windows of runs whose forces agree with what was found, row by row, and whose speed driven forward does not: a vehicle that is
-/// caught where the recorded one just passed, or the other way round, says nothing of what pushed it before. `rows` are the errors
-/// of the balance, which hold more of the noise.
+/// Shorter windows of runs whose forces agree with a law of the place, or one that remembers, row by row, and whose speed driven forward
+/// does not: a vehicle that is caught where the recorded one just passed, or the other way round, says nothing of what pushed it before.
+/// What else there is leads no vehicle elsewhere. `rows` are the errors of the balance, which hold more of the noise.
 pub fn agreeing(
     case: &Case,
     runs: &[Recorded],
@@ -60,13 +61,20 @@ pub fn agreeing(
 ) -> Result<Vec<Option<f64>>, DiagnoseError> {
     /// Share of an error beyond which it is hardly less.
     const HARDLY: f64 = 0.5;
+    /// And below which a balance is closed for the greater part.
+    const CLOSED: f64 = 0.7;
+    let mut laws = refined.causes.iter().filter_map(|cured| cured.cause.law.as_ref());
+    if !laws.any(LawText::leads_elsewhere) {
+        return Ok(windows_s);
+    }
     let left = |errors: &Errors| errors.after / errors.before;
     loop {
         let forward = speeds(case, runs, refined, &windows_s)?;
         let mut any = false;
         for (place, (forward, rows)) in forward.iter().zip(rows).enumerate() {
             let half_s = 0.5 * windows_s[place].unwrap_or(runs[place].measured.trace.duration_s());
-            if left(forward) > HARDLY.max(left(rows)) && half_s >= SHORTEST_S {
+            let agrees = left(rows) < CLOSED && left(forward) > HARDLY.max(left(rows));
+            if agrees && half_s >= SHORTEST_S {
                 windows_s[place] = Some(half_s);
                 any = true;
             }

@@ -48,6 +48,11 @@ pub struct LawText {
 }
 
 impl LawText {
+    /// Whether a vehicle that is a little elsewhere, or a little slower, may be led somewhere else altogether.
+    pub fn leads_elsewhere(&self) -> bool {
+        self.text.contains("latched(") || self.depends_on.contains(&"position_m")
+    }
+
     /// The text of a law of a balance. A share of the drive that is lost before its force was measured takes power alone.
     pub fn new(law: &headland_symbolic::Law, target: Target, kind: Kind) -> Self {
         /// Every piece of it was one of about a dozen: ln of that.

@@ -66,11 +66,11 @@ fn left(runs: &FitRuns) -> f64 {
 /// scale; what takes more than it does to say the same is a patch. And a map that goes by another name, which was named beside it, is
 /// the same.
 fn wins(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
-    let is_scale = SCALES.contains(&id);
-    let patches = (id == CLOCK || is_scale) && other.findings.len() > first.findings.len();
+    let of_sensors = id == CLOCK || SCALES.contains(&id);
+    let patches = of_sensors && other.findings.len() > first.findings.len();
     let held_out = |one: &Diagnosis| Some((one.findings.len(), left(one.fit.held_out.as_ref()?)));
     let plainer = held_out(other).zip(held_out(first)).is_some_and(|(other, first)| is_plainer(other, first));
-    let better = is_better(id, other, first) || is_scale && plainer;
+    let better = is_better(id, other, first) || of_sensors && plainer;
     better && !patches && !is_renamed(id, &other.findings, &first.findings)
 }
 

@@ -4,7 +4,6 @@
 //! speed, as friction does that breaks loose, two speeds that begin next to each other part: the window is then no longer than
 //! they take to be a few times as far apart, and the force is what is judged and not the luck of the first sample.
 
-use crate::catalogue::LawText;
 use crate::prove::{Errors, improved};
 use crate::recorded::Recorded;
 use crate::refine::Refined;
@@ -63,10 +62,6 @@ pub fn agreeing(
     const HARDLY: f64 = 0.5;
     /// And below which a balance is closed for the greater part.
     const CLOSED: f64 = 0.7;
-    let mut laws = refined.causes.iter().filter_map(|cured| cured.cause.law.as_ref());
-    if !laws.any(LawText::leads_elsewhere) {
-        return Ok(windows_s);
-    }
     let left = |errors: &Errors| errors.after / errors.before;
     loop {
         let forward = speeds(case, runs, refined, &windows_s)?;

@@ -1,7 +1,7 @@
 //! Before and after, on runs that were fitted and on runs that were not.
 
 use crate::balance::{Kind, System, change};
-use crate::catalogue::{Class, Form};
+use crate::catalogue::{Class, Form, LawText};
 use crate::events::Event;
 use crate::forward::{agreeing, speed_noise, speeds, usual_window_s, windows_s};
 use crate::gram::Column;
@@ -85,9 +85,14 @@ impl Measure {
             Kind::Motion if refined.causes.is_empty() => case.runs.iter().map(usual_window_s).collect(),
             Kind::Motion => {
                 let runs = corrected_by(case, refined)?;
-                let rows = rows(case, system, &runs, refined, &told(case, system, refined)?, kind)?;
                 let windows_s = windows_s(case, &runs, refined)?;
-                agreeing(case, &runs, refined, windows_s, &rows)?
+                let mut laws = refined.causes.iter().filter_map(|cured| cured.cause.law.as_ref());
+                if laws.any(LawText::leads_elsewhere) {
+                    let rows = rows(case, system, &runs, refined, &told(case, system, refined)?, kind)?;
+                    agreeing(case, &runs, refined, windows_s, &rows)?
+                } else {
+                    windows_s
+                }
             }
             _ => case.runs.iter().map(usual_window_s).collect(),
         };

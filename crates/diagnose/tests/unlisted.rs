@@ -735,14 +735,19 @@ fn oil_that_was_recorded_drags_by_its_temperature() {
     }
 }
 
+/// What was found first is a law that names a channel, and so says the verdict.
+fn is_told_by(recording: &Recording, channel: &str) {
+    let found = found(recording, &Options::default()).unwrap();
+    let said = &found.diagnosis;
+    assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);
+    assert!(said.findings[0].depends_on.contains(&channel.to_owned()), "{}", said.answer);
+}
+
 /// What comes on where the oil is hot is no oil that thins.
 #[test]
 fn a_drag_above_a_temperature_of_the_oil_is_found_as_an_equation() {
     let recording = dragged_by_oil(|v, oil_c| 150.0 * v * (1.0 + ((oil_c - 38.0) / 2.0).tanh()));
-    let found = found(&recording, &Options::default()).unwrap();
-    let said = &found.diagnosis;
-    assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);
-    assert!(said.findings[0].depends_on.contains(&"oil_temperature_c".to_owned()), "{}", said.answer);
+    is_told_by(&recording, "oil_temperature_c");
 }
 
 /// Tyres that are let down and pumped up on the way roll the harder the softer they are.
@@ -750,10 +755,7 @@ fn a_drag_above_a_temperature_of_the_oil_is_found_as_an_equation() {
 fn a_drag_by_the_pressure_of_the_tyres_is_found_as_an_equation() {
     let pressure_pa = |t: f64, run: usize| 1.3e5 + 0.5e5 * (t / 9.0 + 1.3 * run as f64).sin();
     let recording = dragged("tyre_pressure_pa", pressure_pa, |v, _, pa| 1500.0 * v * (-pa / 0.5e5).exp());
-    let found = found(&recording, &Options::default()).unwrap();
-    let said = &found.diagnosis;
-    assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);
-    assert!(said.findings[0].depends_on.contains(&"tyre_pressure_pa".to_owned()), "{}", said.answer);
+    is_told_by(&recording, "tyre_pressure_pa");
 }
 
 /// The same where each run has a pressure of its own: levels that differ for no reason say as much in more numbers.

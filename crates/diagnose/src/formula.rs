@@ -313,8 +313,10 @@ pub fn laws(
         .collect();
     let variables = sought.variables(case);
     let fit = enough(&case.fit, &residual);
+    let times_s: Vec<Vec<f64>> = case.runs.iter().map(|run| run.measured.trace.time_s().to_vec()).collect();
     let problem = Problem {
         variables: &variables,
+        times_s: &times_s,
         target: sought.target,
         rows: &whitening,
         residual: &residual,

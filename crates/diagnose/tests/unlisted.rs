@@ -126,25 +126,38 @@ fn a_drag_that_dies_away_with_speed_is_found_as_an_equation_that_runs() {
     is_found_as_a_law(FADING, &recorded(0.069, FADING));
 }
 
-/// A flap that opens at one speed stays open until another is reached: at speeds between, the force is what was passed last.
-#[test]
-fn a_switch_that_latches_is_found_as_an_equation_that_runs() {
-    const FLAP: &str = r#"expression(resistance: "a_n * latched(v, open_m_s, closed_m_s)", constants: {"a_n": 900.0, "open_m_s": 5.2, "closed_m_s": 1.9})"#;
-    let up_and_down = |effects: &str| {
-        let reach = |speed_m_s: f64| {
-            format!("Reach(speed_m_s: {speed_m_s:?}, acceleration_m_s2: 0.5), Hold(for_s: 5),")
-        };
-        let cycle: String = [4.5, 7.5, 3.5, 1.4, 4.0, 2.5].map(reach).concat();
-        scenario(0.069, effects, "").replace("cycle: [", &format!("cycle: [{cycle}"))
-    };
+/// Driven up and down over several speeds, with some effects.
+fn up_and_down(effects: &str) -> String {
+    let reach =
+        |speed_m_s: f64| format!("Reach(speed_m_s: {speed_m_s:?}, acceleration_m_s2: 0.5), Hold(for_s: 5),");
+    let cycle: String = [4.5, 7.5, 3.5, 1.4, 4.0, 2.5].map(reach).concat();
+    scenario(0.069, effects, "").replace("cycle: [", &format!("cycle: [{cycle}"))
+}
+
+/// What is found of a force that remembers, in an equation with a word.
+fn remembers(hidden: &str, word: &str) {
     let registry = headland_stock::registry();
-    let recording = recorded_of_scenario(&up_and_down(FLAP), &registry);
+    let recording = recorded_of_scenario(&up_and_down(hidden), &registry);
     let found = found_of_scenario(&up_and_down(""), &recording, &Options::default(), &registry).unwrap();
     let said = &found.diagnosis;
     assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);
     let equation = said.findings[0].equation.as_str();
-    let share = reproduced(&found, FLAP, &recording);
-    assert!(share > 0.9 && equation.contains("latched("), "{share} {equation}: {}", said.answer);
+    let share = reproduced(&found, hidden, &recording);
+    assert!(share > 0.9 && equation.contains(word), "{share} {equation}: {}", said.answer);
+}
+
+/// A flap that opens at one speed stays open until another is reached: at speeds between, the force is what was passed last.
+#[test]
+fn a_switch_that_latches_is_found_as_an_equation_that_runs() {
+    const FLAP: &str = r#"expression(resistance: "a_n * latched(v, open_m_s, closed_m_s)", constants: {"a_n": 900.0, "open_m_s": 5.2, "closed_m_s": 1.9})"#;
+    remembers(FLAP, "latched(");
+}
+
+/// A drag that takes nine seconds to follow the square of the speed, as oil that has to be stirred.
+#[test]
+fn what_follows_the_speed_late_is_found_as_an_equation_that_runs() {
+    const LATE: &str = r#"expression(resistance: "a_n * lagged((v / v0_m_s)^2, lag_s)", constants: {"a_n": 1800.0, "v0_m_s": 7.0, "lag_s": 9.0})"#;
+    remembers(LATE, "lagged(");
 }
 
 /// Mud wears off with the way from wherever a run began, which is no place of the lane.

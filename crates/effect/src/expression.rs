@@ -3,8 +3,8 @@
 //! R = f(…), F = f(…), λ = f(…), P = f(…)        each a text in the notation of `expression/parser.rs`
 //!
 //! Source: the author of the scenario; empirical. Notation and units: `expression/names.rs` and `expression/units.rs`.
-//! A formula remembers how far the vehicle came since the run began, and whether each of its switches is on; it does not know the force at
-//! the wheels, of which a share may be lost. Units are checked
+//! A formula remembers how far the vehicle came since the run began, whether each of its switches is on, and what follows a value late
+//! (dy/dt = (u − y)/τ); it does not know the force at the wheels, of which a share may be lost. Units are checked
 //! when it is read: sums and comparisons need one unit, functions pure numbers, and the whole has to come out in newtons or
 //! watts, or as the pure number that a share is.
 //! Where a formula has no finite value the action has none either, nothing is clamped: a force stops the simulation, a
@@ -28,7 +28,7 @@ use dimension::Dimension;
 use fault::Fault;
 use headland_plugin::{Action, Card, Effect, Plugin, Refusal, Situation, State, parameter};
 use headland_units::parse_unit;
-use names::{DRIVE, REMEMBERED};
+use names::{DRIVE, LAGS, WAY_STATE};
 use parser::compile;
 use program::Program;
 use serde::Deserialize;
@@ -77,12 +77,12 @@ impl Plugin for Expression {
     const CARD: Card = Card {
         name: "expression",
         about: "a force, a loss of the drive or a power as a formula of the situation",
-        equation: "R, F, λ, P = + - * / ^ < <= > >= == != ( ) min max clamp abs sign sqrt pow exp ln log10 sin cos tanh latched of \
+        equation: "R, F, λ, P = + - * / ^ < <= > >= == != ( ) min max clamp abs sign sqrt pow exp ln log10 sin cos tanh latched lagged of \
                    v [m/s] acceleration [m/s²] F_drive [N] engine_speed [rad/s] x [m] way [m] t [s] heading [rad] kappa [1/m] slope [1] elevation [m] temperature [°C] oil_temperature [°C] state_of_charge [1] tyre_pressure [Pa] m [kg] \
                    g [m/s²] N [N] rho [kg/m³] area [m²] coasting [1] braking [1] headwind [m/s] crosswind [m/s] and \
                    constants",
         source: "the author of the scenario; empirical",
-        validity: "units have to fit (a factor whose unit no name can say is written as quotients: p_w * (F_drive / f_n)^2); comparisons are 1 or 0; latched(u, on, off) is a switch that goes on at one value of u and off at another; way is the distance \
+        validity: "units have to fit (a factor whose unit no name can say is written as quotients: p_w * (F_drive / f_n)^2); comparisons are 1 or 0; latched(u, on, off) is a switch that goes on at one value of u and off at another; lagged(u, τ) follows u with the time constant τ, settled when the run begins; way is the distance \
                    driven since the run began; slope is the sine, N = m g cos θ the normal load, the cross \
                    wind comes from the right; oil_temperature and tyre_pressure have to be recorded, state_of_charge where the driveline has no battery; powers alone may name the acceleration and engine_speed, which forces make, powers and loss_share F_drive, the force of the drive before that loss; a force that is not finite stops the simulation, \
                    such a power leaves the drive without any",
@@ -166,6 +166,14 @@ impl Plugin for Expression {
     }
 }
 
+impl Expression {
+    fn programs(&self) -> impl Iterator<Item = &Program> {
+        let all =
+            [&self.resistance_n, &self.force_n, &self.loss, &self.auxiliary_power_w, &self.shaft_power_w];
+        all.into_iter().flatten()
+    }
+}
+
 /// A share; NaN where it is none, because a drive that loses all its force or as much again moves nothing.
 fn share(value: f64) -> f64 {
     if value.abs() < 1.0 { value } else { f64::NAN }
@@ -181,14 +189,14 @@ impl Effect for Expression {
     }
 
     fn states(&self) -> Vec<State> {
-        self.memory.iter().map(|name| State { name, initial: 0.0 }).collect()
+        // What follows late begins as what it follows, in the first decision.
+        let initial = |name: &str| if LAGS.contains(&name) { f64::NAN } else { 0.0 };
+        self.memory.iter().map(|name| State { name, initial: initial(name) }).collect()
     }
 
     fn decide(&self, at: &Situation, states: &mut [f64]) -> bool {
-        let formulas =
-            [&self.resistance_n, &self.force_n, &self.loss, &self.auxiliary_power_w, &self.shaft_power_w];
         let mut changed = false;
-        for program in formulas.into_iter().flatten() {
+        for program in self.programs() {
             changed |= program.switch(at, states);
         }
         changed
@@ -196,7 +204,12 @@ impl Effect for Expression {
 
     fn act(&self, at: &Situation, states: &[f64], rates: &mut [f64]) -> Action {
         for (name, rate) in self.memory.iter().zip(rates.iter_mut()) {
-            *rate = if *name == REMEMBERED[0] { at.speed_m_s.abs() } else { 0.0 };
+            *rate = if *name == WAY_STATE { at.speed_m_s.abs() } else { 0.0 };
+        }
+        if self.memory.iter().any(|name| LAGS.contains(name)) {
+            for program in self.programs() {
+                program.rates(at, states, rates);
+            }
         }
         let value =
             |program: &Option<Program>| program.as_ref().map_or(0.0, |program| program.value(at, states));

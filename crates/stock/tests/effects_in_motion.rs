@@ -98,6 +98,17 @@ const EFFECTS: [(&str, &str, &str); 40] = [
         "(resistance: \"f_n * exp(-way / l_m)\", constants: {\"f_n\": 150.0, \"l_m\": 40.0})",
         "tractive_force_n",
     ),
+    (
+        "expression",
+        "(resistance: \"c_n_s_per_m * lagged(v, lag_s)\", constants: {\"c_n_s_per_m\": 20.0, \"lag_s\": 4.0})",
+        "tractive_force_n",
+    ),
+    (
+        "expression",
+        "(auxiliary_power: \"p_w * lagged((F_drive / f1_n)^2, lag_s)\", \
+          constants: {\"p_w\": 1000.0, \"f1_n\": 5000.0, \"lag_s\": 4.0})",
+        "battery_current_a",
+    ),
 ];
 
 fn needs_engine(effect: &str) -> bool {

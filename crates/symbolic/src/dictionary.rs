@@ -20,6 +20,10 @@ const CENTRES: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 const WIDTHS: [f64; 3] = [0.05, 0.12, 0.3];
 /// Widths of steps, as shares of the spread.
 const EDGES: [f64; 2] = [0.02, 0.12];
+/// Time constants of what follows late [s].
+const LAGS_S: [f64; 6] = [1.0, 2.5, 6.0, 15.0, 40.0, 100.0];
+/// Powers of what is followed.
+const FOLLOWED: [u8; 2] = [1, 2];
 /// Turns of an angle in one turn of the vehicle: wind and slope have one, a crown or furrows two.
 const HARMONICS: [u8; 2] = [1, 2];
 
@@ -97,6 +101,12 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
             );
         }
     };
+    // No longer than half the longest run: what is slower is a drift.
+    let late = |all: &mut Vec<Factor>, scale: f64, powers: &[u8]| {
+        for lag_s in LAGS_S.into_iter().filter(|lag_s| 2.0 * lag_s < of.lasts_s()) {
+            all.extend(powers.iter().map(|power| make(Shape::Lag(*power, lag_s), scale, 0.0)));
+        }
+    };
     match of.known.kind {
         Kind::Size | Kind::Coordinate => {
             all.extend(POWERS.map(|p| make(Shape::Power(p), of.round_size(), 0.0)));
@@ -106,6 +116,7 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
             edges(&mut all);
             if of.known.kind == Kind::Size {
                 latches(&mut all);
+                late(&mut all, of.round_size(), &FOLLOWED);
             }
         }
         Kind::Way => {
@@ -132,8 +143,9 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
             if of.known.name != ACCELERATION {
                 curved(&mut all, &[Shape::Tanh], of.size());
             }
-            // A coupling that locks above a force.
+            // What the drive has warmed, and a coupling that locks above a force.
             if of.known.name == DRIVE {
+                late(&mut all, of.round_size(), &FOLLOWED);
                 for share in CENTRES {
                     let centre = of.low + share * of.spread();
                     all.extend(EDGES.map(|width| make(Shape::Step, width * of.spread(), centre)));
@@ -145,7 +157,10 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
         }
         Kind::Angle => all.extend(HARMONICS.map(|n| make(Shape::Harmonic(n), 1.0, 0.0))),
         Kind::Weight => all.push(make(Shape::Power(1.0), of.round_size(), 0.0)),
-        Kind::Gate => all.push(make(Shape::On, 1.0, 0.0)),
+        Kind::Gate => {
+            all.push(make(Shape::On, 1.0, 0.0));
+            late(&mut all, 1.0, &FOLLOWED[..1]);
+        }
     }
     all
 }
@@ -304,12 +319,13 @@ mod tests {
         };
         let values = |by_size: bool| -> Vec<(f64, f64)> {
             let variables = [variable(by_size)];
-            let checked = crate::variable::check(&variables, &[true], Target::Power).unwrap();
+            let times_s = [vec![0.0, 1.0, 2.0, 3.0]];
+            let checked = crate::variable::check(&variables, &times_s, &[true], Target::Power).unwrap();
             let factors = full(&checked, 0);
             factors
                 .iter()
                 .map(|factor| {
-                    let both = factor.along(&[0.7, -0.7], &checked[0]);
+                    let both = factor.along(&[0.7, -0.7], &[0.0, 1.0], &checked[0]);
                     (both[0].0, both[1].0)
                 })
                 .collect()
@@ -332,8 +348,10 @@ mod tests {
             })
             .collect();
         let residual = vec![vec![0.0; situations.len()]];
+        let times_s = [situations.iter().map(|at| at.time_s).collect()];
         let problem = Problem {
             variables: &variables,
+            times_s: &times_s,
             target: Target::Power,
             rows: &AsTheyAre,
             residual: &residual,
@@ -365,17 +383,36 @@ mod tests {
             let effect = effect.unwrap_or_else(|error| panic!("{parameters}: {error}"));
             let names: Vec<&str> = effect.states().iter().map(|state| state.name).collect();
             let mut states = vec![0.0; names.len()];
+            let lag_s = law.constants.iter().find(|one| one.name.starts_with("lag")).map(|one| one.value);
+            let mut led = Vec::new();
             for (at, told) in situations.iter().zip(&law.prediction[0]) {
-                for (state, _) in states.iter_mut().zip(&names).filter(|(_, name)| **name == "way_m") {
-                    *state = way_m(at);
+                for (state, name) in states.iter_mut().zip(&names) {
+                    match *name {
+                        "way_m" => *state = way_m(at),
+                        "lagged" => *state = told / law.constants[0].value,
+                        _ => {}
+                    }
                 }
                 effect.decide(at, &mut states);
+                let mut rates = vec![0.0; states.len()];
+                let found = effect.act(at, &states, &mut rates).auxiliary_power_w;
+                // dy/dt = (u − y)/τ says what it follows.
+                led.extend(lag_s.map(|lag_s| states[0] + lag_s * rates[0]));
                 // Where a switch goes over between two samples both are means.
                 if names.contains(&"latched") && (told / law.constants[0].value).fract() != 0.0 {
                     continue;
                 }
-                let found = effect.act(at, &states, &mut vec![0.0; states.len()]).auxiliary_power_w;
                 assert!((found - told).abs() <= 1e-9 * told.abs().max(1.0), "{parameters}: {found}, {told}");
+            }
+            let lag_s = lag_s.unwrap_or(f64::INFINITY);
+            for (follows, told) in
+                crate::lag::lagged(led.into_iter(), &times_s[0], lag_s).iter().zip(&law.prediction[0])
+            {
+                let follows = follows * law.constants[0].value;
+                assert!(
+                    (follows - told).abs() <= 1e-9 * told.abs().max(1.0),
+                    "{parameters}: {follows}, {told}"
+                );
             }
         }
     }

@@ -140,6 +140,7 @@ pub(crate) fn write(bench: &Bench, law: &Polished, covariance: &DMatrix<f64>, ru
             let centre_sd = sd_of(Free::Centre, if repeats { factor.scale } else { of.spread() });
             let power_sd = sd_of(Free::Power, 1.0);
             let level_sd = sd_of(Free::Level, 1.0);
+            let lag_sd = sd_of(Free::Lag, factor.lag_s());
             inner += factor.shape.free().len();
             let known = of.known;
             let centre = if factor.shape.has_centre() {
@@ -158,13 +159,14 @@ pub(crate) fn write(bench: &Bench, law: &Polished, covariance: &DMatrix<f64>, ru
                 }
                 _ => String::new(),
             };
-            let power = match (power_sd, level_sd) {
-                (Some(sd), _) => {
-                    writer.constant(&format!("power{}", index + 1), (factor.power(), sd), true, "1")
-                }
-                (_, Some(sd)) => {
-                    writer.constant(&format!("level{}", index + 1), (factor.level(), sd), true, "1")
-                }
+            let mut own = |name: &str, value: f64, sd: f64, unit: &str| {
+                let ending = if unit == "1" { String::new() } else { format!("_{unit}") };
+                writer.constant(&format!("{name}{}{ending}", index + 1), (value, sd), true, unit)
+            };
+            let power = match (power_sd, level_sd, lag_sd) {
+                (Some(sd), _, _) => own("power", factor.power(), sd, "1"),
+                (_, Some(sd), _) => own("level", factor.level(), sd, "1"),
+                (_, _, Some(sd)) => own("lag", factor.lag_s(), sd, "s"),
                 _ => String::new(),
             };
             parts.push(factor.text(of, [&scale, &centre, &phase, &power]));

@@ -6,7 +6,7 @@
 //! *BIT* 15 (1975).
 
 use crate::problem::Bench;
-use crate::shape::Free;
+use crate::shape::{Factor, Free};
 use crate::term::Term;
 use crate::vector::{add, dot, normalise, take_out};
 use nalgebra::{DMatrix, DVector};
@@ -145,13 +145,16 @@ fn slope(bench: &Bench, terms: &[Term], amplitudes: &[f64], (index, factor, free
     let inner: &[f64] = if phased { &[1.0] } else { share };
     let (below, above) = (moved(-NUDGE), moved(NUDGE));
     bench.rows(|run| {
-        let (above, below) = (above.sized(&of.seen[run], of, inner), below.sized(&of.seen[run], of, inner));
+        let sized = |factor: &Factor, share: &[f64]| {
+            let of = &bench.variables[factor.variable];
+            factor.sized(&of.seen[run], &of.seen_s[run], of, share)
+        };
+        let (above, below) = (sized(&above, inner), sized(&below, inner));
         let mut slope: Vec<f64> =
             above.iter().zip(&below).map(|(above, below)| (above - below) / (2.0 * NUDGE)).collect();
         for (_, other) in term.factors.iter().enumerate().filter(|(place, _)| *place != factor) {
-            let of = &bench.variables[other.variable];
             let share = if other.shape.has_phase() { share } else { &[1.0] };
-            for (slope, sized) in slope.iter_mut().zip(other.sized(&of.seen[run], of, share)) {
+            for (slope, sized) in slope.iter_mut().zip(sized(other, share)) {
                 *slope *= sized;
             }
         }

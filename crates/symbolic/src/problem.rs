@@ -80,6 +80,8 @@ pub struct Nuisance {
 pub struct Problem<'a> {
     /// What may stand in the law.
     pub variables: &'a [Variable],
+    /// Time of every sample of every run [s], for what a law remembers.
+    pub times_s: &'a [Vec<f64>],
     /// What the law is.
     pub target: Target,
     /// From samples to whitened rows.
@@ -116,17 +118,13 @@ pub(crate) struct Bench<'a> {
 
 impl<'a> Bench<'a> {
     pub fn new(problem: &Problem<'a>) -> Result<Self, SymbolicError> {
-        let mut variables = check(problem.variables, problem.fit, problem.target)?;
+        let mut variables = check(problem.variables, problem.times_s, problem.fit, problem.target)?;
         let runs = problem.residual.len();
+        length("the times", runs, problem.times_s.len(), runs)?;
         for variable in problem.variables {
             length(&format!("`{}`", variable.name), runs, variable.runs.len(), runs)?;
             for (run, samples) in variable.runs.iter().enumerate() {
-                length(
-                    &format!("`{}`", variable.name),
-                    run,
-                    samples.len(),
-                    problem.variables[0].runs[run].len(),
-                )?;
+                length(&format!("`{}`", variable.name), run, samples.len(), problem.times_s[run].len())?;
             }
         }
         for variable in &mut variables {

@@ -2,6 +2,7 @@
 //!
 //! Each divides its variable by a scale of the same unit, so that its value is a pure number whatever the variable is.
 
+use crate::lag::lagged;
 use crate::latch::latched;
 use crate::variable::{Checked, DRIVE, Kind};
 use std::f64::consts::TAU;
@@ -35,6 +36,8 @@ pub(crate) enum Shape {
     Bump,
     /// A switch: on from c upward until u is at c − s or below
     Latch,
+    /// (u/s)^p as it is followed late, with a whole power p and a time constant [s] that the data move
+    Lag(u8, f64),
     /// sin(2π u/s + φ)
     Wave,
     /// On and off again and again: ½ (1 + tanh(k (sin(2π (u − c)/s) − l))), with the level l that the data move; on for
@@ -55,6 +58,7 @@ pub(crate) enum Free {
     Centre,
     Power,
     Level,
+    Lag,
 }
 
 /// How steeply a pulse goes on and off: within a hundredth of its period.
@@ -71,6 +75,7 @@ impl Shape {
             Self::Above(_) | Self::Below(_) => &[Free::Centre],
             Self::Step | Self::Bump | Self::Latch => &[Free::Centre, Free::Scale],
             Self::Pulse(_) => &[Free::Centre, Free::Scale, Free::Level],
+            Self::Lag(..) => &[Free::Lag],
             _ => &[],
         }
     }
@@ -119,6 +124,7 @@ fn takes_size(shape: Shape, of: &Checked) -> bool {
         Shape::FreePower(_) => true,
         Shape::Saturation | Shape::Hyperbola => of.negative || lost,
         Shape::Decay | Shape::Rise | Shape::Latch => both,
+        Shape::Lag(p, _) => both && p % 2 == 1,
         Shape::Tanh => lost && !of.negative,
         _ => false,
     }
@@ -147,6 +153,7 @@ impl Factor {
             Shape::Step => 0.5 * (1.0 + ((u - c) / s).tanh()),
             Shape::Bump => (-((u - c) / s).powi(2)).exp(),
             Shape::Latch => f64::from(u8::from(u >= c)),
+            Shape::Lag(p, _) => (u / s).powi(i32::from(p)),
             Shape::Wave => return (TAU * u / s).sin_cos(),
             Shape::Pulse(level) => 0.5 * (1.0 + (EDGE * ((TAU * (u - c) / s).sin() - level)).tanh()),
             Shape::Harmonic(n) => return (f64::from(n) * u).sin_cos(),
@@ -156,25 +163,29 @@ impl Factor {
         (value, 0.0)
     }
 
-    /// Its values along a run: the sine, and the cosine where it has a phase.
-    pub fn along(&self, run: &[f64], of: &Checked) -> Vec<(f64, f64)> {
-        if self.shape != Shape::Latch {
-            return run.iter().map(|u| self.value(*u, of)).collect();
-        }
-        let size = takes_size(self.shape, of);
-        let values = run.iter().map(|u| if size { u.abs() } else { *u });
-        latched(values, self.centre, self.centre - self.scale).into_iter().map(|on| (on, 0.0)).collect()
+    /// Its values along a run, at times [s] that what it remembers goes by: the sine, and the cosine where it has a phase.
+    pub fn along(&self, run: &[f64], time_s: &[f64], of: &Checked) -> Vec<(f64, f64)> {
+        let remembered = match self.shape {
+            Shape::Latch => {
+                let size = takes_size(self.shape, of);
+                let values = run.iter().map(|u| if size { u.abs() } else { *u });
+                latched(values, self.centre, self.centre - self.scale)
+            }
+            Shape::Lag(_, lag_s) => lagged(run.iter().map(|u| self.value(*u, of).0), time_s, lag_s),
+            _ => return run.iter().map(|u| self.value(*u, of)).collect(),
+        };
+        remembered.into_iter().map(|value| (value, 0.0)).collect()
     }
 
     /// Its values along a run, with the amplitudes of sine and cosine where it has a phase and else with the one that there is.
-    pub fn sized(&self, run: &[f64], of: &Checked, share: &[f64]) -> Vec<f64> {
+    pub fn sized(&self, run: &[f64], time_s: &[f64], of: &Checked, share: &[f64]) -> Vec<f64> {
         let sum = |(value, cosine): (f64, f64)| {
             share.get(1).map_or(share[0] * value, |other| share[0] * value + other * cosine)
         };
-        self.along(run, of).into_iter().map(sum).collect()
+        self.along(run, time_s, of).into_iter().map(sum).collect()
     }
 
-    /// As text, with the names of its scale, centre, phase, and power or level.
+    /// As text, with the names of its scale, centre, phase, and power, level or lag.
     pub fn text(&self, of: &Checked, [scale, centre, phase, power]: [&str; 4]) -> String {
         let name = of.known.name;
         let u = if takes_size(self.shape, of) { format!("abs({name})") } else { name.to_owned() };
@@ -195,6 +206,8 @@ impl Factor {
             Shape::Step => format!("0.5 * (1 + tanh(({u} - {centre}) / {scale}))"),
             Shape::Bump => format!("exp(-(({u} - {centre}) / {scale})^2)"),
             Shape::Latch => format!("latched({u}, {centre}, {centre} - {scale})"),
+            Shape::Lag(1, _) => format!("lagged({u} / {scale}, {power})"),
+            Shape::Lag(p, _) => format!("lagged(({u} / {scale})^{p}, {power})"),
             Shape::Wave => format!("sin({TAU} * {u} / {scale} + {phase})"),
             Shape::Pulse(_) => {
                 format!("0.5 * (1 + tanh({EDGE} * (sin({TAU} * ({u} - {centre}) / {scale}) - {power})))")
@@ -216,6 +229,7 @@ impl Factor {
             Free::Centre => (self.centre - of.low) / of.spread(),
             Free::Power => self.power(),
             Free::Level => self.level(),
+            Free::Lag => self.lag_s().ln(),
         }
     }
 
@@ -233,6 +247,10 @@ impl Factor {
         const POWERS: (f64, f64) = (0.2, 6.0);
         /// Levels: beyond it a pulse is on, or off, for less than a tenth of its period.
         const MOST_LEVEL: f64 = 0.95;
+        /// A lag that is shorter is a sensor's [s].
+        const SHORTEST_S: f64 = 0.5;
+        /// And one that is longer than this share of the longest run is a drift.
+        const LONGEST: f64 = 1.0;
         match free {
             Free::Scale if self.shape.repeats() => {
                 self.scale = (of.spread() / inner.max(FEWEST_CYCLES)).max(of.finest);
@@ -246,6 +264,12 @@ impl Factor {
             Free::Centre => self.centre = of.low + of.spread() * inner.clamp(CENTRES.0, CENTRES.1),
             Free::Power => self.shape = Shape::FreePower(inner.clamp(POWERS.0, POWERS.1)),
             Free::Level => self.shape = Shape::Pulse(inner.clamp(-MOST_LEVEL, MOST_LEVEL)),
+            Free::Lag => {
+                if let Shape::Lag(p, _) = self.shape {
+                    let longest_s = (LONGEST * of.lasts_s()).max(SHORTEST_S);
+                    self.shape = Shape::Lag(p, inner.exp().clamp(SHORTEST_S, longest_s));
+                }
+            }
         }
     }
 
@@ -253,7 +277,7 @@ impl Factor {
     pub fn longest_step(&self, free: Free) -> f64 {
         match free {
             Free::Scale if self.shape.repeats() => 0.25,
-            Free::Scale => 0.7,
+            Free::Scale | Free::Lag => 0.7,
             Free::Centre => 0.15,
             Free::Power => 0.5,
             Free::Level => 0.3,
@@ -270,6 +294,7 @@ impl Factor {
         let shape = match self.shape {
             Shape::FreePower(_) => Shape::FreePower(1.0),
             Shape::Pulse(_) => Shape::Pulse(0.0),
+            Shape::Lag(p, _) => Shape::Lag(p, 0.0),
             other => other,
         };
         (self.variable, format!("{shape:?}"))
@@ -278,6 +303,11 @@ impl Factor {
     /// The level that the data moved; 0 where there is none.
     pub fn level(&self) -> f64 {
         if let Shape::Pulse(level) = self.shape { level } else { 0.0 }
+    }
+
+    /// The time constant that the data moved [s]; 0 where there is none.
+    pub fn lag_s(&self) -> f64 {
+        if let Shape::Lag(_, lag_s) = self.shape { lag_s } else { 0.0 }
     }
 
     /// The power that the data moved; 1 where there is none.

@@ -39,25 +39,26 @@ impl Term {
 
     /// Its columns in one run, at every sample that the rows look at.
     pub fn samples(&self, variables: &[Checked], run: usize) -> Vec<Vec<f64>> {
-        self.along(variables, |of| &of.seen[run])
+        self.along(variables, |of| (&of.seen[run], &of.seen_s[run]))
     }
 
     /// Its columns in one run, at every sample.
     pub fn all_samples(&self, variables: &[Checked], run: usize) -> Vec<Vec<f64>> {
-        self.along(variables, |of| &of.runs[run])
+        self.along(variables, |of| (&of.runs[run], &of.times_s[run]))
     }
 
     fn along<'a, 'b: 'a>(
         &self,
         variables: &'a [Checked<'b>],
-        values: impl Fn(&'a Checked<'b>) -> &'a [f64],
+        values: impl Fn(&'a Checked<'b>) -> (&'a [f64], &'a [f64]),
     ) -> Vec<Vec<f64>> {
-        let length = self.factors.first().map_or(0, |first| values(&variables[first.variable]).len());
+        let length = self.factors.first().map_or(0, |first| values(&variables[first.variable]).0.len());
         let mut envelope = vec![1.0; length];
         let mut phased: Option<(Vec<f64>, Vec<f64>)> = None;
         for factor in &self.factors {
             let of = &variables[factor.variable];
-            let values = factor.along(values(of), of).into_iter();
+            let (values, times_s) = values(of);
+            let values = factor.along(values, times_s, of).into_iter();
             if factor.shape.has_phase() {
                 phased = Some(values.unzip());
             } else {

@@ -104,8 +104,11 @@ pub(crate) const KNOWN: [Known; 24] = [
 pub(crate) struct Checked<'a> {
     pub known: &'static Known,
     pub runs: &'a [Vec<f64>],
-    /// Those samples that the rows look at.
+    /// Time of every sample of every run [s].
+    pub times_s: &'a [Vec<f64>],
+    /// Those samples that the rows look at, and their times [s].
     pub seen: Vec<Cow<'a, [f64]>>,
+    pub seen_s: Vec<Cow<'a, [f64]>>,
     /// Least and greatest value in the runs that are fitted.
     pub low: f64,
     pub high: f64,
@@ -122,12 +125,22 @@ pub(crate) struct Checked<'a> {
 impl Checked<'_> {
     /// Leaves only every so many samples of each run to be seen.
     pub fn look_at_every(&mut self, every: impl Fn(usize) -> usize) {
-        for (run, seen) in self.seen.iter_mut().enumerate() {
-            let every = every(run);
-            if every > 1 {
-                *seen = self.runs[run].iter().copied().step_by(every).collect();
+        let of = |seen: &mut [Cow<'_, [f64]>], runs: &[Vec<f64>]| {
+            for (run, seen) in seen.iter_mut().enumerate() {
+                let every = every(run);
+                if every > 1 {
+                    *seen = runs[run].iter().copied().step_by(every).collect();
+                }
             }
-        }
+        };
+        of(&mut self.seen, self.runs);
+        of(&mut self.seen_s, self.times_s);
+    }
+
+    /// How long the longest run is [s].
+    pub fn lasts_s(&self) -> f64 {
+        let of = |run: &Vec<f64>| run.last().zip(run.first()).map_or(0.0, |(last, first)| last - first);
+        self.times_s.iter().map(of).fold(0.0, f64::max)
     }
 
     /// How far its values reach.
@@ -160,6 +173,7 @@ impl Checked<'_> {
 /// Checks names, units and values; variables that never change are left out, a constant has their place.
 pub(crate) fn check<'a>(
     variables: &'a [Variable],
+    times_s: &'a [Vec<f64>],
     fit: &[bool],
     target: Target,
 ) -> Result<Vec<Checked<'a>>, SymbolicError> {
@@ -211,10 +225,11 @@ pub(crate) fn check<'a>(
         steps.sort_by(f64::total_cmp);
         let step = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
         let negative = variable.runs.iter().flatten().any(|value| *value < 0.0);
-        let seen = variable.runs.iter().map(|values| Cow::Borrowed(values.as_slice())).collect();
+        let borrowed = |runs: &'a [Vec<f64>]| runs.iter().map(|run| Cow::Borrowed(run.as_slice())).collect();
         let (runs, finest) = (variable.runs.as_slice(), variable.finest);
-        let by_size = variable.by_size;
-        let checked = Checked { known, runs, seen, low, high, negative, by_size, step, finest };
+        let (seen, seen_s, by_size) = (borrowed(runs), borrowed(times_s), variable.by_size);
+        let checked =
+            Checked { known, runs, times_s, seen, seen_s, low, high, negative, by_size, step, finest };
         if checked.spread() > LEAST_SPREAD * checked.size() {
             all.push(checked);
         }
@@ -225,6 +240,8 @@ pub(crate) fn check<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const NO_TIMES: &[Vec<f64>] = &[];
 
     fn variable(name: &str, unit: &str) -> Variable {
         Variable {
@@ -253,7 +270,7 @@ mod tests {
     #[test]
     fn what_is_made_of_the_target_is_refused() {
         for name in ["a", "force", "dv_dt", "tractive_force_n", "acceleration"] {
-            let error = check(&[variable(name, "N")], &[true], Target::Force).unwrap_err();
+            let error = check(&[variable(name, "N")], NO_TIMES, &[true], Target::Force).unwrap_err();
             assert!(matches!(error, SymbolicError::Unknown { .. }), "{error}");
         }
     }
@@ -261,17 +278,19 @@ mod tests {
     #[test]
     fn a_unit_that_does_not_fit_is_refused() {
         for (name, unit) in [("v", "kg"), ("v", "km/h"), ("x", "s"), ("temperature", "K"), ("t", "furlong")] {
-            let error = check(&[variable(name, unit)], &[true], Target::Force).unwrap_err();
+            let error = check(&[variable(name, unit)], NO_TIMES, &[true], Target::Force).unwrap_err();
             assert!(matches!(error, SymbolicError::Unit { .. }), "{error}");
         }
-        assert!(check(&[variable("v", "m/s"), variable("v", "m/s")], &[true], Target::Force).is_err());
+        assert!(
+            check(&[variable("v", "m/s"), variable("v", "m/s")], NO_TIMES, &[true], Target::Force).is_err()
+        );
     }
 
     #[test]
     fn what_never_changes_is_left_out() {
         let still = Variable { runs: vec![vec![4.0; 3]], ..variable("m", "kg") };
         let all = [still, variable("v", "m/s")];
-        let checked = check(&all, &[true], Target::Force).unwrap();
+        let checked = check(&all, NO_TIMES, &[true], Target::Force).unwrap();
         assert_eq!(checked.len(), 1);
         assert!((checked[0].round_size() - 2.0).abs() < 1e-12 && checked[0].step > 0.0);
     }

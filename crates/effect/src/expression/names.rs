@@ -71,6 +71,8 @@ pub(super) enum Rule {
     Power,
     /// Arguments of one unit, and a pure number.
     Switch,
+    /// Any unit, and seconds; a value of the first unit.
+    Lag,
 }
 
 /// A function that expressions may call.
@@ -86,14 +88,14 @@ const fn function(name: &'static str, rule: Rule, step: Step) -> Function {
     let arguments = match step {
         Step::Push(_) | Step::Load(_) | Step::Recall(_) => 0,
         Step::One(_) => 1,
-        Step::Two(_) => 2,
+        Step::Two(_) | Step::Lag(_) => 2,
         Step::Three(_) | Step::Latch(_) => 3,
     };
     Function { name, arguments, rule, step }
 }
 
 /// Every function. What is not a number stays so: none of them turns NaN into a number.
-pub(super) const FUNCTIONS: [Function; 14] = [
+pub(super) const FUNCTIONS: [Function; 15] = [
     function("min", Rule::Same, Step::Two(least)),
     function("max", Rule::Same, Step::Two(greatest)),
     function("clamp", Rule::Same, Step::Three(clamp)),
@@ -108,14 +110,24 @@ pub(super) const FUNCTIONS: [Function; 14] = [
     function("cos", Rule::Pure, Step::One(f64::cos)),
     function("tanh", Rule::Pure, Step::One(f64::tanh)),
     function("latched", Rule::Switch, Step::Latch(0)),
+    function("lagged", Rule::Lag, Step::Lag(0)),
 ];
 
 /// The distance that was driven since the run began, either way: the one variable that is remembered [m].
 pub(super) const WAY: &str = "way";
 pub(super) const WAY_UNIT: &str = "m";
 
-/// What an expression may remember, by the names of its states: how far it came, and whether each of its switches is on.
-pub(super) const REMEMBERED: [&str; 5] = ["way_m", "latched", "latched_2", "latched_3", "latched_4"];
+/// The unit of what a value is followed by late.
+pub(super) const LAG_UNIT: &str = "s";
+
+/// The name of the state of [`WAY`].
+pub(super) const WAY_STATE: &str = "way_m";
+
+/// What an expression may remember beside the way, by the names of its states: whether each of its switches is on.
+pub(super) const SWITCHES: [&str; 4] = ["latched", "latched_2", "latched_3", "latched_4"];
+
+/// And what follows a value late.
+pub(super) const LAGS: [&str; 4] = ["lagged", "lagged_2", "lagged_3", "lagged_4"];
 
 /// Comparisons by their sign: 1 where they hold, 0 where not.
 pub(super) const COMPARISONS: [(&str, Step); 6] = [
@@ -198,6 +210,16 @@ mod tests {
                     program.push(*step).unwrap();
                     let unknown = Situation { speed_m_s: nan, ..Situation::default() };
                     vec![program.value(&unknown, &vec![0.0; place + 1])]
+                }
+                Step::Lag(place) => {
+                    let of = |first: f64, second: f64| {
+                        let mut program = Program::default();
+                        program.push(Step::Push(first)).unwrap();
+                        program.push(Step::Push(second)).unwrap();
+                        program.push(*step).unwrap();
+                        program.value(&Situation::default(), &vec![0.0; place + 1])
+                    };
+                    vec![of(nan, 1.0), of(1.0, nan), of(1.0, 0.0), of(1.0, -1.0)]
                 }
                 Step::Push(_) | Step::Load(_) | Step::Recall(_) => Vec::new(),
             };

@@ -13,7 +13,8 @@ use super::dimension::Dimension;
 use super::fault::Fault;
 use super::lexer::{Kind, Token, next};
 use super::names::{
-    COMPARISONS, FUNCTIONS, Function, MADE, REMEMBERED, Rule, VARIABLES, WAY, WAY_UNIT, power,
+    COMPARISONS, FUNCTIONS, Function, LAG_UNIT, LAGS, MADE, Rule, SWITCHES, VARIABLES, WAY, WAY_STATE,
+    WAY_UNIT, power,
 };
 use super::program::{Program, Step};
 use super::units::{Operand, same_unit};
@@ -228,18 +229,21 @@ impl<'a> Parser<'a> {
 
     /// Where the way is remembered; all that name it share one place.
     fn place_of_way(&mut self) -> usize {
-        let [way, ..] = REMEMBERED;
-        self.memory.iter().position(|name| *name == way).unwrap_or_else(|| {
-            self.memory.push(way);
+        self.memory.iter().position(|name| *name == WAY_STATE).unwrap_or_else(|| {
+            self.memory.push(WAY_STATE);
             self.memory.len() - 1
         })
     }
 
-    /// Where the next switch is remembered; each has a place of its own.
-    fn next_switch(&mut self, span: &Range<usize>) -> Result<usize, Fault> {
-        let [_, switches @ ..] = REMEMBERED;
-        let Some(free) = switches.iter().find(|name| !self.memory.contains(name)) else {
-            let expected = format!("at most {} switches in all formulas", switches.len());
+    /// Where the next switch is remembered, or what follows late; each has a place of its own.
+    fn next_place(
+        &mut self,
+        names: &'static [&'static str],
+        what: &str,
+        span: &Range<usize>,
+    ) -> Result<usize, Fault> {
+        let Some(free) = names.iter().find(|name| !self.memory.contains(name)) else {
+            let expected = format!("at most {} {what} in all formulas", names.len());
             return Err(Fault::at(self.text, span.clone(), "", &expected));
         };
         self.memory.push(free);
@@ -268,7 +272,8 @@ impl<'a> Parser<'a> {
         let span = start..self.end;
         let dimension = self.dimension_of(function, &arguments)?;
         let step = match function.step {
-            Step::Latch(_) => Step::Latch(self.next_switch(&span)?),
+            Step::Latch(_) => Step::Latch(self.next_place(&SWITCHES, "switches", &span)?),
+            Step::Lag(_) => Step::Lag(self.next_place(&LAGS, "`lagged`", &span)?),
             other => other,
         };
         self.emit(step, span.clone())?;
@@ -298,6 +303,13 @@ impl<'a> Parser<'a> {
                     same_unit(self.text, first, argument)?;
                 }
                 Ok(Dimension::NONE)
+            }
+            Rule::Lag => {
+                let lag_s = &arguments[1];
+                if lag_s.dimension == dimension(LAG_UNIT) {
+                    return Ok(first.dimension);
+                }
+                Err(lag_s.fault(self.text, "a time constant in s, as the second argument of `lagged`"))
             }
             Rule::Root => Ok(first.dimension.to_the(0.5)),
             Rule::Power => first.raised(self.text, &arguments[1]),

@@ -22,6 +22,17 @@ pub(super) enum Step {
     Recall(usize),
     /// A switch that is remembered in a place: of a value, and of those at which it goes on and off.
     Latch(usize),
+    /// What follows a value late and is remembered in a place: of that value, and of a time constant [s].
+    Lag(usize),
+}
+
+/// What is remembered, with what it is set or led by.
+enum Asked {
+    Nothing,
+    /// A value, and where it goes on and off.
+    Switch([f64; 3]),
+    /// A value, and the time constant [s].
+    Lag([f64; 2]),
 }
 
 /// More values wait than there is room for.
@@ -56,24 +67,39 @@ impl Program {
 
     /// Its value in a situation, with what is remembered; NaN where it is not defined there.
     pub(super) fn value(&self, at: &Situation, memory: &[f64]) -> f64 {
-        self.run(at, |place, _| memory[place])
+        self.run(at, |place, asked| match asked {
+            Asked::Lag([value, _]) => late(memory[place], value),
+            _ => memory[place],
+        })
     }
 
-    /// Sets the switches that are remembered as a situation has them; whether any changed.
+    /// Sets how fast each place changes that follows a value late [1/s of its unit]; the others stay.
+    pub(super) fn rates(&self, at: &Situation, memory: &[f64], rates: &mut [f64]) {
+        self.run(at, |place, asked| {
+            let Asked::Lag([value, lag_s]) = asked else { return memory[place] };
+            let own = late(memory[place], value);
+            rates[place] = (value - own) / lag_s;
+            own
+        });
+    }
+
+    /// Sets the switches that are remembered as a situation has them, and begins what was not begun; whether any changed.
     pub(super) fn switch(&self, at: &Situation, memory: &mut [f64]) -> bool {
         let mut changed = false;
-        self.run(at, |place, of| {
+        self.run(at, |place, asked| {
             let before = memory[place];
-            if let Some([value, on, off]) = of {
-                memory[place] = switched(before, value, on, off);
+            match asked {
+                Asked::Nothing => {}
+                Asked::Switch([value, on, off]) => memory[place] = switched(before, value, on, off),
+                Asked::Lag([value, _]) => memory[place] = late(before, value),
             }
-            changed |= memory[place] != before;
+            changed |= memory[place].to_bits() != before.to_bits();
             memory[place]
         });
         changed
     }
 
-    fn run(&self, at: &Situation, mut recall: impl FnMut(usize, Option<[f64; 3]>) -> f64) -> f64 {
+    fn run(&self, at: &Situation, mut recall: impl FnMut(usize, Asked) -> f64) -> f64 {
         let mut stack = [0.0; STACK];
         let mut top = 0;
         for step in &self.steps {
@@ -84,10 +110,20 @@ impl Program {
                 Step::One(f) => f(stack[first]),
                 Step::Two(f) => f(stack[first], stack[first + 1]),
                 Step::Three(f) => f(stack[first], stack[first + 1], stack[first + 2]),
-                Step::Recall(place) => recall(place, None),
+                Step::Recall(place) => recall(place, Asked::Nothing),
                 Step::Latch(place) => {
                     let of = [stack[first], stack[first + 1], stack[first + 2]];
-                    if of.iter().any(|value| value.is_nan()) { f64::NAN } else { recall(place, Some(of)) }
+                    let known = !of.iter().any(|value| value.is_nan());
+                    if known { recall(place, Asked::Switch(of)) } else { f64::NAN }
+                }
+                Step::Lag(place) => {
+                    let of = [stack[first], stack[first + 1]];
+                    // What takes no time, or less, follows nothing.
+                    if of[0].is_nan() || of[1].is_nan() || of[1] <= 0.0 {
+                        f64::NAN
+                    } else {
+                        recall(place, Asked::Lag(of))
+                    }
                 }
             };
             top = first + 1;
@@ -109,10 +145,15 @@ impl Step {
         match self {
             Self::Push(_) | Self::Load(_) | Self::Recall(_) => 0,
             Self::One(_) => 1,
-            Self::Two(_) => 2,
+            Self::Two(_) | Self::Lag(_) => 2,
             Self::Three(_) | Self::Latch(_) => 3,
         }
     }
+}
+
+/// What follows a value late; before it has begun it is that value, as if that had always been so.
+fn late(before: f64, value: f64) -> f64 {
+    if before.is_nan() { value } else { before }
 }
 
 /// A switch, 1 or 0: it goes on at `on` and off at `off`, and between them it stays what it is. Where `on` lies below, it goes on as

@@ -306,6 +306,39 @@ fn the_way_is_what_was_driven_and_not_where_it_began() {
     assert_eq!(rates, [3.0]);
 }
 
+/// dy/dt = (u − y)/τ with τ = 5 s, from y = u at the begin on; what is not known yet is led nowhere.
+#[test]
+fn what_follows_late_begins_settled_and_closes_in_on_what_it_follows() {
+    let late = "(force: \"c_n_s_per_m * lagged(v, lag_s)\", resistance: \"f_n * lagged(v > v0_m_s, lag_s / 2)\", \
+                 constants: {\"c_n_s_per_m\": 30.0, \"lag_s\": 5.0, \"f_n\": 100.0, \"v0_m_s\": 2.0})";
+    let effect = build::<Expression>(late).unwrap();
+    let names: Vec<&str> = effect.states().iter().map(|state| state.name).collect();
+    assert_eq!(names, ["lagged", "lagged_2"]);
+    let mut states: Vec<f64> = effect.states().iter().map(|state| state.initial).collect();
+    let begin = Situation { speed_m_s: 4.0, ..situation() };
+    let mut rates = [f64::NAN; 2];
+    // Before anything was decided it is what it follows.
+    assert_eq!(effect.act(&begin, &states, &mut rates).force_n, 120.0);
+    assert_eq!(rates, [0.0; 2]);
+    assert!(effect.decide(&begin, &mut states) && states == [1.0, 4.0]);
+    let later = Situation { speed_m_s: 1.0, ..situation() };
+    assert!(!effect.decide(&later, &mut states) && states == [1.0, 4.0]);
+    let action = effect.act(&later, &states, &mut rates);
+    assert_eq!((action.force_n, action.resistance_n), (120.0, 100.0));
+    assert_eq!(rates, [(0.0 - 1.0) / 2.5, (1.0 - 4.0) / 5.0]);
+    let unknown = Situation { speed_m_s: f64::NAN, ..situation() };
+    assert!(effect.act(&unknown, &states, &mut rates).force_n.is_nan());
+    assert!(rates.iter().all(|rate| *rate == 0.0) && !effect.decide(&unknown, &mut states));
+}
+
+#[test]
+fn what_follows_late_has_the_unit_of_what_it_follows_and_a_time_constant() {
+    assert!(refused("f_n * lagged(v, v0_m_s) / v0_m_s").contains("a time constant in s"));
+    assert!(refused("f_n * lagged(v, t)").contains("a formula in N"));
+    let five = ["lagged(v, t) / v0_m_s"; 5].join(" + ");
+    assert!(refused(&format!("f_n * ({five})")).contains("at most 4 `lagged` in all formulas"));
+}
+
 #[test]
 fn switches_have_units_and_there_are_not_too_many_of_them() {
     assert!(

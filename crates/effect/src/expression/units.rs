@@ -38,7 +38,7 @@ impl Operand {
         }
     }
 
-    fn fault(&self, text: &str, expected: &str) -> Fault {
+    pub(super) fn fault(&self, text: &str, expected: &str) -> Fault {
         let told = if self.dimension.is_pure() {
             format!(", which is {}", self.dimension)
         } else {

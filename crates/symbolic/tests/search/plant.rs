@@ -105,6 +105,7 @@ impl Rows for Sparse {
 /// A problem that owns what it is made of.
 pub struct Made {
     pub variables: Vec<Variable>,
+    pub times_s: Vec<Vec<f64>>,
     pub residual: Vec<Vec<f64>>,
     pub nuisances: Vec<Nuisance>,
     pub fit: Vec<bool>,
@@ -115,6 +116,7 @@ impl Made {
     pub fn problem(&self) -> Problem<'_> {
         Problem {
             variables: &self.variables,
+            times_s: &self.times_s,
             target: Target::Force,
             rows: &self.weak,
             residual: &self.residual,
@@ -199,7 +201,8 @@ impl Plant {
             })
             .collect();
         let fit = (0..self.runs.len()).map(|run| run % 10 != 2 && run % 10 != 6 && run % 10 != 9).collect();
-        Made { variables: self.variables(), residual, nuisances, fit, weak }
+        let times_s = self.runs.iter().map(|run| run.iter().map(|at| at.t).collect()).collect();
+        Made { variables: self.variables(), times_s, residual, nuisances, fit, weak }
     }
 
     fn variables(&self) -> Vec<Variable> {

@@ -125,6 +125,28 @@ fn a_switch_that_latches_is_found_with_its_levels() {
     assert!((on - ON_M_S).abs() < 0.1 && (on - over - OFF_M_S).abs() < 0.1, "{on} {over}");
 }
 
+/// A drag that follows the square of the speed with a time constant of 8.7 s.
+#[test]
+fn what_follows_late_is_found_with_its_time_constant() {
+    const LAG_S: f64 = 8.7;
+    let followed = Cell::new((0.0, 0.0));
+    let late = |at: &At| {
+        let (before, last_s) = followed.get();
+        let own = (at.v / 10.0).powi(2);
+        let now = if at.t == 0.0 { own } else { own + (before - own) * (-(at.t - last_s) / LAG_S).exp() };
+        followed.set((now, at.t));
+        900.0 * now
+    };
+    let (found, r2) = found(9, 100.0, late);
+    let law = found.law().unwrap();
+    assert!(
+        r2 > 0.95 && law.terms == 1 && law.text.contains("lagged((v / v1_m_s)^2, lag1_s)"),
+        "{r2} {}",
+        law.text
+    );
+    close(constant(&found, "lag1_s"), LAG_S);
+}
+
 #[test]
 fn what_one_side_of_a_bend_does_is_found() {
     let (found, r2) = found(7, 100.0, |at| 400.0 * (at.kappa * at.v * at.v).max(0.0));

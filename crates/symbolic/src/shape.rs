@@ -38,6 +38,8 @@ pub(crate) enum Shape {
     Latch,
     /// (u/s)^p as it is followed late, with a whole power p and a time constant [s] that the data move
     Lag(u8, f64),
+    /// u/s less what follows it late, with a time constant [s] that the data move: what springs and dampers in a row do
+    Ahead(f64),
     /// sin(2π u/s + φ)
     Wave,
     /// On and off again and again: ½ (1 + tanh(k (sin(2π (u − c)/s) − l))), with the level l that the data move; on for
@@ -75,7 +77,7 @@ impl Shape {
             Self::Above(_) | Self::Below(_) => &[Free::Centre],
             Self::Step | Self::Bump | Self::Latch => &[Free::Centre, Free::Scale],
             Self::Pulse(_) => &[Free::Centre, Free::Scale, Free::Level],
-            Self::Lag(..) => &[Free::Lag],
+            Self::Lag(..) | Self::Ahead(_) => &[Free::Lag],
             _ => &[],
         }
     }
@@ -154,6 +156,7 @@ impl Factor {
             Shape::Bump => (-((u - c) / s).powi(2)).exp(),
             Shape::Latch => f64::from(u8::from(u >= c)),
             Shape::Lag(p, _) => (u / s).powi(i32::from(p)),
+            Shape::Ahead(_) => u / s,
             Shape::Wave => return (TAU * u / s).sin_cos(),
             Shape::Pulse(level) => 0.5 * (1.0 + (EDGE * ((TAU * (u - c) / s).sin() - level)).tanh()),
             Shape::Harmonic(n) => return (f64::from(n) * u).sin_cos(),
@@ -172,6 +175,10 @@ impl Factor {
                 latched(values, self.centre, self.centre - self.scale)
             }
             Shape::Lag(_, lag_s) => lagged(run.iter().map(|u| self.value(*u, of).0), time_s, lag_s),
+            Shape::Ahead(lag_s) => {
+                let values = || run.iter().map(|u| self.value(*u, of).0);
+                values().zip(lagged(values(), time_s, lag_s)).map(|(value, late)| value - late).collect()
+            }
             _ => return run.iter().map(|u| self.value(*u, of)).collect(),
         };
         remembered.into_iter().map(|value| (value, 0.0)).collect()
@@ -208,6 +215,7 @@ impl Factor {
             Shape::Latch => format!("latched({u}, {centre}, {centre} - {scale})"),
             Shape::Lag(1, _) => format!("lagged({u} / {scale}, {power})"),
             Shape::Lag(p, _) => format!("lagged(({u} / {scale})^{p}, {power})"),
+            Shape::Ahead(_) => format!("(({u} - lagged({u}, {power})) / {scale})"),
             Shape::Wave => format!("sin({TAU} * {u} / {scale} + {phase})"),
             Shape::Pulse(_) => {
                 format!("0.5 * (1 + tanh({EDGE} * (sin({TAU} * ({u} - {centre}) / {scale}) - {power})))")
@@ -265,10 +273,12 @@ impl Factor {
             Free::Power => self.shape = Shape::FreePower(inner.clamp(POWERS.0, POWERS.1)),
             Free::Level => self.shape = Shape::Pulse(inner.clamp(-MOST_LEVEL, MOST_LEVEL)),
             Free::Lag => {
-                if let Shape::Lag(p, _) = self.shape {
-                    let longest_s = (LONGEST * of.lasts_s()).max(SHORTEST_S);
-                    self.shape = Shape::Lag(p, inner.exp().clamp(SHORTEST_S, longest_s));
-                }
+                let longest_s = (LONGEST * of.lasts_s()).max(SHORTEST_S);
+                let lag_s = inner.exp().clamp(SHORTEST_S, longest_s);
+                self.shape = match self.shape {
+                    Shape::Lag(p, _) => Shape::Lag(p, lag_s),
+                    _ => Shape::Ahead(lag_s),
+                };
             }
         }
     }
@@ -295,6 +305,7 @@ impl Factor {
             Shape::FreePower(_) => Shape::FreePower(1.0),
             Shape::Pulse(_) => Shape::Pulse(0.0),
             Shape::Lag(p, _) => Shape::Lag(p, 0.0),
+            Shape::Ahead(_) => Shape::Ahead(0.0),
             other => other,
         };
         (self.variable, format!("{shape:?}"))
@@ -307,7 +318,7 @@ impl Factor {
 
     /// The time constant that the data moved [s]; 0 where there is none.
     pub fn lag_s(&self) -> f64 {
-        if let Shape::Lag(_, lag_s) = self.shape { lag_s } else { 0.0 }
+        if let Shape::Lag(_, lag_s) | Shape::Ahead(lag_s) = self.shape { lag_s } else { 0.0 }
     }
 
     /// The power that the data moved; 1 where there is none.

@@ -125,26 +125,35 @@ fn a_switch_that_latches_is_found_with_its_levels() {
     assert!((on - ON_M_S).abs() < 0.1 && (on - over - OFF_M_S).abs() < 0.1, "{on} {over}");
 }
 
-/// A drag that follows the square of the speed with a time constant of 8.7 s.
+/// A value as it is followed with a time constant, from where it had settled.
+fn late(lag_s: f64, of: fn(&At) -> f64) -> impl Fn(&At) -> f64 {
+    let followed = Cell::new((0.0, 0.0));
+    move |at| {
+        let (before, last_s) = followed.get();
+        let now =
+            if at.t == 0.0 { of(at) } else { of(at) + (before - of(at)) * (-(at.t - last_s) / lag_s).exp() };
+        followed.set((now, at.t));
+        now
+    }
+}
+
+/// The square of a speed, and a spring that a damper lets go.
 #[test]
 fn what_follows_late_is_found_with_its_time_constant() {
     const LAG_S: f64 = 8.7;
-    let followed = Cell::new((0.0, 0.0));
-    let late = |at: &At| {
-        let (before, last_s) = followed.get();
-        let own = (at.v / 10.0).powi(2);
-        let now = if at.t == 0.0 { own } else { own + (before - own) * (-(at.t - last_s) / LAG_S).exp() };
-        followed.set((now, at.t));
-        900.0 * now
-    };
-    let (found, r2) = found(9, 100.0, late);
-    let law = found.law().unwrap();
-    assert!(
-        r2 > 0.95 && law.terms == 1 && law.text.contains("lagged((v / v1_m_s)^2, lag1_s)"),
-        "{r2} {}",
-        law.text
-    );
-    close(constant(&found, "lag1_s"), LAG_S);
+    let square = late(LAG_S, |at| (at.v / 10.0).powi(2));
+    let (found_of_square, r2) = found(9, 100.0, |at| 900.0 * square(at));
+    let law = found_of_square.law().unwrap();
+    let follows = law.text.contains("lagged((v / v1_m_s)^2, lag1_s)");
+    assert!(r2 > 0.95 && law.terms == 1 && follows, "{r2} {}", law.text);
+    close(constant(&found_of_square, "lag1_s"), LAG_S);
+
+    let damper = late(LAG_S, |at| at.v);
+    let (found_of_spring, r2) = found(10, 100.0, |at| 90.0 * (at.v - damper(at)));
+    let law = found_of_spring.law().unwrap();
+    let follows = law.text.contains("((v - lagged(v, lag1_s)) / v1_m_s)");
+    assert!(r2 > 0.95 && law.terms == 1 && follows, "{r2} {}", law.text);
+    close(constant(&found_of_spring, "lag1_s"), LAG_S);
 }
 
 #[test]

@@ -246,9 +246,9 @@ fn beside(
     };
     for parts in candidates {
         let Some(stand) = state.settle(&parts, &found.stand.noises) else { continue };
-        let more = if within(&stand) { state.with_listed(&stand, &[]) } else { None };
+        let more = if within(&stand) { state.with_listed(&stand, &found, &[]) } else { None };
         if !courses.is_empty() {
-            lasting.extend(state.with_listed(&stand, &courses));
+            lasting.extend(state.with_listed(&stand, &found, &courses));
             lasting.push(stand.clone());
         }
         for stand in [more, Some(stand)].into_iter().flatten() {
@@ -548,12 +548,18 @@ impl State<'_> {
             .any(|law| reduced.squared_correlation(&law.trial.columns, &columns, &nuisance, &sd) > THEIRS)
     }
 
-    /// A set with the listed cause beside that makes it likeliest, but for some; faults of sensors were looked for before.
-    fn with_listed(&self, stand: &Stand, but: &[&'static str]) -> Option<Stand> {
+    /// A set with the listed cause beside that makes it likeliest, but for some; faults of sensors were looked for before. Of a wind of
+    /// each run the columns are those of a breath, unless it was found: what goes with speed takes it for a strong one.
+    fn with_listed(&self, stand: &Stand, found: &Found, but: &[&'static str]) -> Option<Stand> {
         let reduced = self.reduced(&stand.noises, &stand.parts)?;
         let faults = self.case.causes.iter().filter(|cause| cause.form == Form::Measured);
         let banned: Vec<&str> = faults.map(|cause| cause.id).chain(but.iter().copied()).collect();
-        self.contest(stand, &reduced, &banned).into_iter().next().map(|one| one.stand)
+        let known = |part: &Part| found.stand.parts.iter().any(|own| own.trial.columns == part.trial.columns);
+        let told = |stand: &Stand| {
+            let part = stand.parts.last();
+            part.is_some_and(|part| !self.cause(&part.trial).blows_by_run() || known(part))
+        };
+        self.contest(stand, &reduced, &banned).into_iter().map(|one| one.stand).find(told)
     }
 }
 

@@ -383,6 +383,7 @@ impl<'a> Case<'a> {
             fastest_m_s: quantile(1.0),
             one_ratio: model.driveline.force_of_torque_n(1.0, 1.0).is_some(),
             duration_s: self.longest_s(),
+            reach_m: self.runs.iter().flat_map(|run| &run.position_m).copied().fold(0.0, f64::max),
             channels: names
                 .iter()
                 .map(|channel| channel.name.clone())

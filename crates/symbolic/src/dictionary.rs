@@ -191,6 +191,7 @@ fn short(variables: &[Checked], index: usize) -> Vec<Factor> {
         Kind::Way => all.extend([0.07, 0.25, 0.8].map(|share| make(Shape::Decay, share * of.size(), 0.0))),
         Kind::Level => {
             all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
+            all.push(make(Shape::From, of.round_size(), at(0.5)));
             all.push(make(Shape::Decay, 0.4 * of.spread(), 0.0));
             all.push(make(Shape::Step, 0.05 * of.spread(), at(0.5)));
         }

@@ -26,6 +26,8 @@ pub(crate) enum Shape {
     Decay,
     /// 1 − exp(−u/s): what grows towards a level.
     Rise,
+    /// (u − c)/s: what is nought at a value of its own
+    From,
     /// max((u − c)/s, 0)^p, with a whole power p
     Above(u8),
     /// max((c − u)/s, 0)^p, with a whole power p
@@ -74,7 +76,7 @@ impl Shape {
                 &[Free::Scale]
             }
             Self::FreePower(_) => &[Free::Power],
-            Self::Above(_) | Self::Below(_) => &[Free::Centre],
+            Self::From | Self::Above(_) | Self::Below(_) => &[Free::Centre],
             Self::Step | Self::Bump | Self::Latch => &[Free::Centre, Free::Scale],
             Self::Pulse(_) => &[Free::Centre, Free::Scale, Free::Level],
             Self::Lag(..) | Self::Ahead(_) => &[Free::Lag],
@@ -150,6 +152,7 @@ impl Factor {
             Shape::Hyperbola => 1.0 / (1.0 + u / s),
             Shape::Decay => (-u / s).exp(),
             Shape::Rise => 1.0 - (-u / s).exp(),
+            Shape::From => (u - c) / s,
             Shape::Above(p) => ((u - c) / s).max(0.0).powi(i32::from(p)),
             Shape::Below(p) => ((c - u) / s).max(0.0).powi(i32::from(p)),
             Shape::Step => 0.5 * (1.0 + ((u - c) / s).tanh()),
@@ -206,6 +209,7 @@ impl Factor {
             Shape::Hyperbola => format!("(1 / (1 + {u} / {scale}))"),
             Shape::Decay => format!("exp(-{u} / {scale})"),
             Shape::Rise => format!("(1 - exp(-{u} / {scale}))"),
+            Shape::From => format!("(({u} - {centre}) / {scale})"),
             Shape::Above(1) => format!("max(({u} - {centre}) / {scale}, 0)"),
             Shape::Below(1) => format!("max(({centre} - {u}) / {scale}, 0)"),
             Shape::Above(p) => format!("max(({u} - {centre}) / {scale}, 0)^{p}"),

@@ -3,6 +3,7 @@
 
 mod cause;
 mod law_text;
+mod passes;
 mod powers;
 mod sensors;
 mod term;
@@ -14,6 +15,7 @@ pub use term::Term;
 
 use crate::balance::Kind;
 use cause::{LIMIT, cause};
+use passes::passes;
 use powers::powers;
 use sensors::sensors;
 use std::f64::consts::{PI, TAU};
@@ -38,6 +40,8 @@ pub struct Around {
     pub one_ratio: bool,
     /// Longest run [s].
     pub duration_s: f64,
+    /// How far from where places begin any run comes [m].
+    pub reach_m: f64,
     /// Channels that every run has.
     pub channels: Vec<String>,
     /// Whether force or torque drives somewhere.
@@ -196,10 +200,6 @@ fn by_oil(weight: f64) -> Cause {
     )
     .shaped(SCALES_K.map(|scale_k| vec![scale_k, REFERENCE_C]).into())
 }
-
-/// What a pass leaves of the resistance that the one before it left: between the points of so coarse a grid lies more than
-/// levels that differ from run to run leave to be told.
-const PASSED_ON: [f64; 6] = [0.95, 0.85, 0.7, 0.55, 0.4, 0.25];
 
 /// What may differ from run to run: the surface, what is hitched or mounted.
 fn by_run(around: &Around, pull: Term) -> [Cause; 4] {
@@ -619,20 +619,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             .shaped(vec![vec![around.soil_coefficient, around.mass_kg]]),
         );
     }
-    if around.passes > 2 {
-        all.push(
-            cause(
-                "multipass",
-                MOTION,
-                vec![linear("coefficient", "1", 0.03), shape("factor", "1")],
-                "F = c (fⁿ⁻¹ − 1) N",
-                &["position_m"],
-                "ground that firms with every pass",
-                "drive a fresh lane beside the old one",
-            )
-            .shaped(PASSED_ON.map(|factor| vec![factor]).into()),
-        );
-    }
+    all.extend(passes(around));
     if around.drives {
         let mut lost = vec![cause(
             "driveline_efficiency",

@@ -89,6 +89,7 @@ mod steps;
 mod straying;
 mod stuck;
 mod student;
+mod swings;
 mod tails;
 mod thinned;
 mod together;

@@ -84,6 +84,18 @@ fn ground_that_firms_to_next_to_nothing_is_no_level_of_each_run() {
     assert!((factor.value - FACTOR).abs() < 0.05, "{factor:?}");
 }
 
+/// Laps of 31 m on soft ground, of which every one leaves a part of the resistance: not oil that warms up beside another level.
+#[test]
+fn ground_that_firms_from_lap_to_lap_is_told_with_the_lap() {
+    const LAP_M: f64 = 31.0;
+    let hidden = format!("multipass(coefficient: 0.031, factor: 0.62, lap_length_m: {LAP_M:?})");
+    let said = found(&hidden).diagnosis;
+    let [laps] = &said.findings[..] else { panic!("{}", said.answer) };
+    assert_eq!(laps.id, "multipass", "{}", said.answer);
+    let lap = laps.parameters.iter().find(|one| one.name == "lap_length_m").unwrap();
+    assert!((lap.value - LAP_M).abs() < 0.5, "{lap:?}");
+}
+
 /// One run alone comes across a patch: that the ground was soft there, and that something was let down for as long, say the same.
 #[test]
 fn what_holds_one_run_back_in_one_place_is_in_doubt() {

@@ -79,7 +79,7 @@ pub fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     let speeds: Vec<f64> = case.runs.iter().flat_map(|run| run.motion.value.iter().copied()).collect();
     let finest = |name: &str| match name {
         "t" => BLOCKS * block_s,
-        "x" => BLOCKS * block_s * median(&speeds).abs(),
+        "x" | "way" => BLOCKS * block_s * median(&speeds).abs(),
         _ => 0.0,
     };
     let acceleration = kind.is_power().then(|| of(&accelerated_m_s2)).flatten();

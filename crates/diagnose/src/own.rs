@@ -139,7 +139,10 @@ fn is_formula(effect: &str, field: &str) -> bool {
 /// The channels that a formula's variables are read from.
 fn names_of(formula: &str) -> Vec<&'static str> {
     let words: BTreeSet<&str> = formula.split(|c: char| !(c.is_alphanumeric() || c == '_')).collect();
-    CHANNELS.iter().filter(|(name, _)| words.contains(name)).map(|(_, channel)| *channel).collect()
+    let named = CHANNELS.iter().filter(|(name, _)| words.contains(name));
+    let mut channels: Vec<&str> = named.map(|(_, channel)| *channel).collect();
+    channels.dedup();
+    channels
 }
 
 /// Half of the range in which a parameter usually lies.

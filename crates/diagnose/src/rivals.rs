@@ -1,7 +1,7 @@
 //! What could stand in the place of a cause: other causes, other sets, and the same function by another name.
 
 use crate::balance::Kind;
-use crate::catalogue::{Cause, Form};
+use crate::catalogue::{Cause, Form, LawText};
 use crate::conclude::Side;
 use crate::gram::Column;
 use crate::places::in_one_place;
@@ -82,7 +82,7 @@ impl State<'_> {
     /// however coarse the map.
     fn is_place_told_one_way(&self, own: &Trial, other: &Trial) -> bool {
         let (own, other) = (self.cause(own), self.cause(other));
-        let of_place = own.law.as_ref().is_some_and(|law| law.depends_on == ["position_m"]);
+        let of_place = own.law.as_ref().is_some_and(LawText::is_of_places);
         let told = self.system.has(Kind::Parity) || self.case.drives_a_path_both_ways();
         of_place && other.form == Form::OverPosition && !told
     }

@@ -4,7 +4,7 @@
 
 use crate::shape::{Factor, Shape};
 use crate::term::Term;
-use crate::variable::{ACCELERATION, Checked, DRIVE, Kind};
+use crate::variable::{ACCELERATION, Checked, DRIVE, Kind, PRESSURE};
 
 /// Powers of a size. Sources of the halves: rolling in soil and flow through gaps have such exponents.
 const POWERS: [f64; 5] = [0.5, 1.0, 1.5, 2.0, 3.0];
@@ -192,6 +192,10 @@ fn short(variables: &[Checked], index: usize) -> Vec<Factor> {
         Kind::Level => {
             all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
             all.push(make(Shape::From, of.round_size(), at(0.5)));
+            // A tyre's patch of contact grows as its pressure falls.
+            if of.known.name == PRESSURE {
+                all.push(make(Shape::Under, 1.0, at(0.5)));
+            }
             all.push(make(Shape::Decay, 0.4 * of.spread(), 0.0));
             all.push(make(Shape::Step, 0.05 * of.spread(), at(0.5)));
         }

@@ -28,7 +28,7 @@ pub(crate) struct Screen {
 
 /// At most so many rows are looked at: screening needs no more, and the memory of the columns is bounded.
 const MOST_ROWS: usize = 4000;
-/// At most so many waves of position, and of time.
+/// At most so many waves of position, of the way, and of time.
 const MOST_WAVES: usize = 1000;
 /// Waves lie this share of one cycle over the record apart, so that none falls between two.
 const CYCLES_APART: f64 = 0.5;
@@ -43,7 +43,7 @@ impl Screen {
     ) -> Result<Self, SymbolicError> {
         let (mut terms, mut waves) = (dictionary, Vec::new());
         for (index, of) in bench.variables.iter().enumerate() {
-            if of.known.kind != Kind::Coordinate {
+            if ![Kind::Coordinate, Kind::Way].contains(&of.known.kind) {
                 continue;
             }
             let begin = terms.len();

@@ -28,6 +28,8 @@ pub(crate) enum Shape {
     Rise,
     /// (u − c)/s: what is nought at a value of its own
     From,
+    /// c/u − 1 of what is never nought: nought at a value of its own as well
+    Under,
     /// max((u − c)/s, 0)^p, with a whole power p
     Above(u8),
     /// max((c − u)/s, 0)^p, with a whole power p
@@ -76,7 +78,7 @@ impl Shape {
                 &[Free::Scale]
             }
             Self::FreePower(_) => &[Free::Power],
-            Self::From | Self::Above(_) | Self::Below(_) => &[Free::Centre],
+            Self::From | Self::Under | Self::Above(_) | Self::Below(_) => &[Free::Centre],
             Self::Step | Self::Bump | Self::Latch => &[Free::Centre, Free::Scale],
             Self::Pulse(_) => &[Free::Centre, Free::Scale, Free::Level],
             Self::Lag(..) | Self::Ahead(_) => &[Free::Lag],
@@ -96,7 +98,7 @@ impl Shape {
 
     /// Whether a scale stands in it.
     pub fn has_scale(self) -> bool {
-        !matches!(self, Self::Harmonic(_) | Self::On | Self::Off)
+        !matches!(self, Self::Harmonic(_) | Self::On | Self::Off | Self::Under)
     }
 
     /// Whether a centre stands in it.
@@ -153,6 +155,7 @@ impl Factor {
             Shape::Decay => (-u / s).exp(),
             Shape::Rise => 1.0 - (-u / s).exp(),
             Shape::From => (u - c) / s,
+            Shape::Under => c / u - 1.0,
             Shape::Above(p) => ((u - c) / s).max(0.0).powi(i32::from(p)),
             Shape::Below(p) => ((c - u) / s).max(0.0).powi(i32::from(p)),
             Shape::Step => 0.5 * (1.0 + ((u - c) / s).tanh()),
@@ -210,6 +213,7 @@ impl Factor {
             Shape::Decay => format!("exp(-{u} / {scale})"),
             Shape::Rise => format!("(1 - exp(-{u} / {scale}))"),
             Shape::From => format!("(({u} - {centre}) / {scale})"),
+            Shape::Under => format!("({centre} / {u} - 1)"),
             Shape::Above(1) => format!("max(({u} - {centre}) / {scale}, 0)"),
             Shape::Below(1) => format!("max(({centre} - {u}) / {scale}, 0)"),
             Shape::Above(p) => format!("max(({u} - {centre}) / {scale}, 0)^{p}"),

@@ -71,6 +71,9 @@ const ENGINE_SPEED: &str = "engine_speed";
 /// The force at the wheels: by itself what a law of a force would have to say.
 pub(crate) const DRIVE: &str = "F_drive";
 
+/// The pressure of the tyres, which is never nought.
+pub(crate) const PRESSURE: &str = "tyre_pressure";
+
 /// Everything that may stand in a law.
 pub(crate) const KNOWN: [Known; 24] = [
     known("v", "m/s", "_m_s", Kind::Size),
@@ -87,7 +90,7 @@ pub(crate) const KNOWN: [Known; 24] = [
     Known { name: "temperature", unit: "°C", value_ending: "_c", scale_ending: "_k", kind: Kind::Level },
     Known { name: "oil_temperature", unit: "°C", value_ending: "_c", scale_ending: "_k", kind: Kind::Level },
     known("state_of_charge", "1", "", Kind::Level),
-    known("tyre_pressure", "Pa", "_pa", Kind::Level),
+    known(PRESSURE, "Pa", "_pa", Kind::Level),
     known("m", "kg", "_kg", Kind::Weight),
     known("g", "m/s²", "_m_s2", Kind::Weight),
     known("N", "N", "_n", Kind::Weight),

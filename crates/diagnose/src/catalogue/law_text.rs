@@ -4,13 +4,18 @@ use super::{Cause, Class, Form, MOTION, Term};
 use crate::balance::Kind;
 use headland_symbolic::Target;
 
+/// Where a vehicle is, and what it came since its run began is read from that as well.
+const PLACE: &str = "position_m";
+const WAY: &str = "way";
+
 /// Channels that the variables of a formula are read from.
-pub const CHANNELS: [(&str, &str); 17] = [
+pub const CHANNELS: [(&str, &str); 18] = [
     ("v", "speed_m_s"),
     ("acceleration", "acceleration_m_s2"),
     ("F_drive", "tractive_force_n"),
     ("engine_speed", "engine_speed_rad_s"),
-    ("x", "position_m"),
+    ("x", PLACE),
+    (WAY, PLACE),
     ("t", "time_s"),
     ("heading", "heading_rad"),
     ("kappa", "curvature_per_m"),
@@ -48,15 +53,27 @@ pub struct LawText {
 }
 
 impl LawText {
+    /// Whether it is a law of places alone, as a map is: the way since a run began is none.
+    pub fn is_of_places(&self) -> bool {
+        let word = |letter: char| letter.is_alphanumeric() || letter == '_';
+        let way = self.text.split(|letter| !word(letter)).any(|name| name == WAY);
+        self.depends_on == [PLACE] && !way
+    }
+
     /// Whether a vehicle that is a little elsewhere, or a little slower, may be led somewhere else altogether.
     pub fn leads_elsewhere(&self) -> bool {
-        self.text.contains("latched(") || self.depends_on.contains(&"position_m")
+        self.text.contains("latched(") || self.depends_on.contains(&PLACE)
     }
 
     /// The text of a law of a balance. A share of the drive that is lost before its force was measured takes power alone.
     pub fn new(law: &headland_symbolic::Law, target: Target, kind: Kind) -> Self {
         /// Every piece of it was one of about a dozen: ln of that.
         const PER_PIECE: f64 = 2.5;
+        let named = |(name, _): &(&'static str, &'static str)| {
+            law.names(name) || target == Target::Share && *name == "F_drive"
+        };
+        let mut depends_on: Vec<_> = CHANNELS.into_iter().filter(named).map(|(_, channel)| channel).collect();
+        depends_on.dedup();
         Self {
             role: match target {
                 Target::Force => RESISTANCE,
@@ -69,11 +86,7 @@ impl LawText {
             },
             constants_text: law.constants_text(),
             constants: law.constants.clone(),
-            depends_on: CHANNELS
-                .into_iter()
-                .filter(|(name, _)| law.names(name) || target == Target::Share && *name == "F_drive")
-                .map(|(_, channel)| channel)
-                .collect(),
+            depends_on,
             terms: law.terms,
             cost: PER_PIECE * law.complexity as f64,
         }

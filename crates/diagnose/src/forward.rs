@@ -4,6 +4,7 @@
 //! speed, as friction does that breaks loose, two speeds that begin next to each other part: the window is then no longer than
 //! they take to be a few times as far apart, and the force is what is judged and not the luck of the first sample.
 
+use crate::catalogue::LawText;
 use crate::prove::{Errors, improved};
 use crate::recorded::Recorded;
 use crate::refine::Refined;
@@ -49,8 +50,8 @@ pub fn windows_s(
 }
 
 /// Shorter windows of runs whose forces agree with a law of the place, or one that remembers, row by row, and whose speed driven forward
-/// does not: a vehicle that is caught where the recorded one just passed, or the other way round, says nothing of what pushed it before.
-/// What else there is leads no vehicle elsewhere. `rows` are the errors of the balance, which hold more of the noise.
+/// is hardly nearer with that law than without: a vehicle that is caught where the recorded one just passed, or the other way round, says
+/// nothing of what pushed it before. What else there is leads no vehicle elsewhere. `rows` are the errors of the balance, which hold more of the noise.
 pub fn agreeing(
     case: &Case,
     runs: &[Recorded],
@@ -62,13 +63,16 @@ pub fn agreeing(
     const HARDLY: f64 = 0.5;
     /// And below which a balance is closed for the greater part.
     const CLOSED: f64 = 0.7;
-    let left = |errors: &Errors| errors.after / errors.before;
+    let mut lawless = refined.clone();
+    lawless.causes.retain(|cured| !cured.cause.law.as_ref().is_some_and(LawText::leads_elsewhere));
     loop {
         let forward = speeds(case, runs, refined, &windows_s)?;
+        let without = speeds(case, runs, &lawless, &windows_s)?;
         let mut any = false;
-        for (place, (forward, rows)) in forward.iter().zip(rows).enumerate() {
+        for (place, ((forward, without), rows)) in forward.iter().zip(&without).zip(rows).enumerate() {
             let half_s = 0.5 * windows_s[place].unwrap_or(runs[place].measured.trace.duration_s());
-            let agrees = left(rows) < CLOSED && left(forward) > HARDLY.max(left(rows));
+            let open = rows.after / rows.before;
+            let agrees = open < CLOSED && forward.after > HARDLY.max(open) * without.after;
             if agrees && half_s >= SHORTEST_S {
                 windows_s[place] = Some(half_s);
                 any = true;

@@ -409,6 +409,8 @@ impl State<'_> {
     fn keeps_to_priors(&self, stand: &Stand, other: &Stand) -> bool {
         /// Nothing that is known is so many standard deviations wrong.
         const MOST: f64 = 3.5;
+        /// As far as another has it, but for what any two estimates differ by.
+        const ABOUT: f64 = 1.15;
         /// What a drift may cost of what a set brings.
         const LITTLE: f64 = 0.05;
         let more = (worth(stand) - worth(other)).max(0.0);
@@ -423,7 +425,7 @@ impl State<'_> {
             }
             strains.into_iter().map(f64::abs).collect()
         };
-        strains(stand).into_iter().zip(strains(other)).all(|(strain, other)| strain < most.max(other))
+        strains(stand).into_iter().zip(strains(other)).all(|(strain, other)| strain < most.max(ABOUT * other))
     }
 
     /// Listed causes of a set that do to the rows what a free parameter does, each with the column of that one and by how many of

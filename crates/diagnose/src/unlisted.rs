@@ -164,7 +164,9 @@ fn candidates(
         let mut part = add(case, system, pool, &law, sought);
         for simpler in sound.filter(|_| rows <= MANY_ROWS) {
             let part = add(case, system, pool, &simpler, sought);
-            candidates.push(start.iter().cloned().chain([part]).collect());
+            let listed = windows(case, system, pool, &simpler)?;
+            let with = |part: Part| start.iter().cloned().chain([part]).collect();
+            candidates.extend(std::iter::once(part).chain(listed).map(with));
         }
         // Once more with the noise that is left then: what was fitted to the whole mismatch hides slow laws.
         let state = State { case, system, pool, fit: &case.fit };

@@ -26,7 +26,7 @@ const BATTERY: (&str, &str) = (
 );
 
 /// Each effect with parameters that show, and a channel in which they show: on the car, or on the tractor.
-const EFFECTS: [(&str, &str, &str); 40] = [
+const EFFECTS: [(&str, &str, &str); 42] = [
     ("wind", "(speed_m_s: 4.0, from_rad: 0.5)", "tractive_force_n"),
     ("grade", "(positions_m: [0.0, 40.0, 90.0], grades: [0.0, 0.03, -0.01])", "tractive_force_n"),
     ("grade_constant", "(grade: 0.02)", "tractive_force_n"),

@@ -75,7 +75,7 @@ mod tests {
             let lap_m = 600.0 / f64::from(count);
             assert!(tried.iter().any(|one| (one / lap_m - 1.0).abs() < 0.05), "{lap_m} of {tried:?}");
         }
-        let around = |soil_coefficient, reach_m| Around { soil_coefficient, reach_m, ..Around::default() };
+        let around = |soil_coefficient, reach_m| Around { reach_m, soil_coefficient, ..Around::default() };
         assert_eq!(passes(&around(0.03, 600.0)).len(), 1);
         assert!(passes(&around(0.008, 600.0)).is_empty() && passes(&around(0.03, 25.0)).is_empty());
     }

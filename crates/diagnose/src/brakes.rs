@@ -285,7 +285,7 @@ fn event(run: &Recorded, number: usize, excess: &[f64], (from, to): (usize, usiz
     let sd_n = sd_n / (lasted_s / WINDOW_S).max(1.0).sqrt();
     let own = Event { run: number, from_s: time_s[from], to_s: time_s[to], force_n, sd_n, gain: 0.0 };
     let own = match run.measured.trace.get("brake") {
-        Some(switch) => switched(own, time_s, (excess, switch), run.measured.how.smoothing_s),
+        Some(switch) => switched(&own, time_s, (excess, switch), run.measured.how.smoothing_s),
         None => own,
     };
     Event { gain: 0.5 * (own.force_n / own.sd_n).powi(2), ..own }
@@ -293,7 +293,7 @@ fn event(run: &Recorded, number: usize, excess: &[f64], (from, to): (usize, usiz
 
 /// What a switch says of a stretch: it goes over half way between two samples, and all that holds the vehicle back meanwhile is what
 /// the slope of the speed, which is smoothed over `smoothing_s` to either side, smears around it.
-fn switched(own: Event, time_s: &[f64], (excess, switch): (&[f64], &[f64]), smoothing_s: f64) -> Event {
+fn switched(own: &Event, time_s: &[f64], (excess, switch): (&[f64], &[f64]), smoothing_s: f64) -> Event {
     let first = time_s.partition_point(|time| *time < own.from_s);
     let last = time_s.partition_point(|time| *time <= own.to_s) - 1;
     let middle = |one: usize, other: usize| 0.5 * (time_s[one] + time_s[other]);
@@ -302,17 +302,17 @@ fn switched(own: Event, time_s: &[f64], (excess, switch): (&[f64], &[f64]), smoo
     let reach_s = 0.5 * WINDOW_S + smoothing_s;
     // Where somebody brakes again so soon, each stretch has its half of what lies between.
     let off = |index: &usize| switch[*index] < 0.5;
-    let before = (0..first).rev().take_while(|index| time_s[*index] >= from_s - reach_s);
-    let after = (last + 1..time_s.len()).take_while(|index| time_s[*index] <= to_s + reach_s);
-    let (all_before, all_after) = (before.clone().count(), after.clone().count());
-    let share = |off: usize, all: usize| if off < all { off / 2 } else { off };
-    let begin = first - share(before.take_while(off).count(), all_before);
-    let end = last + share(after.take_while(off).count(), all_after);
+    let half = |off: usize, all: usize| if off < all { off / 2 } else { off };
+    let (before, after) = ((0..first).rev(), last + 1..time_s.len());
+    let near_before = before.clone().take_while(|index| time_s[*index] >= from_s - reach_s).count();
+    let near_after = after.clone().take_while(|index| time_s[*index] <= to_s + reach_s).count();
+    let begin = first - near_before.min(half(before.clone().take_while(off).count(), before.len()));
+    let end = last + near_after.min(half(after.clone().take_while(off).count(), after.len()));
     let step_s =
         |index: usize| 0.5 * (time_s[(index + 1).min(time_s.len() - 1)] - time_s[index.saturating_sub(1)]);
     let known = (begin..=end).filter(|index| excess[*index].is_finite());
     let impulse_n_s: f64 = known.map(|index| excess[index] * step_s(index)).sum();
-    Event { from_s, to_s, force_n: impulse_n_s / (to_s - from_s), ..own }
+    Event { from_s, to_s, force_n: impulse_n_s / (to_s - from_s), ..own.clone() }
 }
 
 #[cfg(test)]
@@ -338,7 +338,7 @@ mod tests {
         for (from, to) in [(40, 61), (66, 87)] {
             let own =
                 Event { run: 0, from_s: time_s[from], to_s: time_s[to], force_n: 0.0, sd_n: 1.0, gain: 0.0 };
-            let told = switched(own, &time_s, (&excess, &switch), 0.0);
+            let told = switched(&own, &time_s, (&excess, &switch), 0.0);
             assert!((told.to_s - told.from_s - 1.1).abs() < 1e-9, "{told:?}");
             assert!((told.force_n - 10e3).abs() < 100.0, "{told:?}");
         }

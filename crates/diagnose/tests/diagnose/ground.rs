@@ -1,6 +1,8 @@
 //! What is of the ground, and what only looks like it or is taken for something else.
 
-use super::setting::{ELECTRIC, found_of_scenario, named, recording_of_scenario, scenario};
+use super::setting::{
+    ELECTRIC, found_of_scenario, named, recorded_of_scenario, recording_of_scenario, scenario,
+};
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{Diagnosed, Options, Verdict};
 
@@ -88,8 +90,14 @@ fn ground_that_firms_to_next_to_nothing_is_no_level_of_each_run() {
 #[test]
 fn ground_that_firms_from_lap_to_lap_is_told_with_the_lap() {
     const LAP_M: f64 = 31.0;
+    let registry = headland_stock::registry();
     let hidden = format!("multipass(coefficient: 0.031, factor: 0.62, lap_length_m: {LAP_M:?})");
-    let said = found(&hidden).diagnosis;
+    let mut recording = recorded_of_scenario(&scenario(0.069, &hidden, ""), &registry);
+    for run in &mut recording.runs {
+        run.path = None;
+    }
+    let nominal = scenario(0.069, "", "");
+    let said = found_of_scenario(&nominal, &recording, &Options::default(), &registry).unwrap().diagnosis;
     let [laps] = &said.findings[..] else { panic!("{}", said.answer) };
     assert_eq!(laps.id, "multipass", "{}", said.answer);
     let lap = laps.parameters.iter().find(|one| one.name == "lap_length_m").unwrap();

@@ -50,6 +50,7 @@ impl Sought {
             (Target::Share, Kind::Motion) => run.known_force_n(),
             (Target::Share, _) => drive_n(run, said),
             (Target::Power, Kind::Shaft | Kind::Fuel) if run.force_is_known() => drive_n(run, said),
+            (Target::Power, Kind::Battery) if run.force_is_known() => run.known_force_n(),
             _ => Vec::new(),
         };
         let drive_n = case.runs.iter().zip(&case.nominal).map(drive_n).collect();

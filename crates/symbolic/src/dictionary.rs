@@ -207,6 +207,10 @@ fn short(variables: &[Checked], index: usize) -> Vec<Factor> {
                 all.extend([Shape::Above(1), Shape::Below(1)].map(|shape| make(shape, of.round_size(), 0.0)));
             }
             all.push(make(Shape::Power(2.0), of.round_size(), 0.0));
+            // Between what bearings take and what currents warm.
+            if of.known.name == DRIVE {
+                all.push(make(Shape::FreePower(1.5), of.round_size(), 0.0));
+            }
         }
         Kind::Angle => all.push(make(Shape::Harmonic(1), 1.0, 0.0)),
         Kind::Weight => all.push(make(Shape::Power(1.0), of.round_size(), 0.0)),

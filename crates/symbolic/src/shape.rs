@@ -259,6 +259,8 @@ impl Factor {
         const FINER: f64 = 0.25;
         /// Centres, as shares of the spread.
         const CENTRES: (f64, f64) = (-0.1, 1.1);
+        /// What is nought at a value may never have come there.
+        const NOUGHTS: (f64, f64) = (-3.0, 4.0);
         /// Powers: below the first a constant, above the second a wall.
         const POWERS: (f64, f64) = (0.2, 6.0);
         /// Levels: beyond it a pulse is on, or off, for less than a tenth of its period.
@@ -277,7 +279,11 @@ impl Factor {
                 self.scale = inner.exp().clamp(smallest, (SCALES.1 * largest).max(smallest));
             }
             Free::Centre if self.shape.repeats() => self.centre = inner * self.scale,
-            Free::Centre => self.centre = of.low + of.spread() * inner.clamp(CENTRES.0, CENTRES.1),
+            Free::Centre => {
+                let nought = matches!(self.shape, Shape::From | Shape::Under);
+                let (low, high) = if nought { NOUGHTS } else { CENTRES };
+                self.centre = of.low + of.spread() * inner.clamp(low, high);
+            }
             Free::Power => self.shape = Shape::FreePower(inner.clamp(POWERS.0, POWERS.1)),
             Free::Level => self.shape = Shape::Pulse(inner.clamp(-MOST_LEVEL, MOST_LEVEL)),
             Free::Lag => {

@@ -51,7 +51,8 @@ pub fn windows_s(
 
 /// Shorter windows of runs whose forces agree with a law of the place, or one that remembers, row by row, and whose speed driven forward
 /// is hardly nearer with that law than without: a vehicle that is caught where the recorded one just passed, or the other way round, says
-/// nothing of what pushed it before. What else there is leads no vehicle elsewhere. `rows` are the errors of the balance, which hold more of the noise.
+/// nothing of what pushed it before. What else there is leads no vehicle elsewhere. `rows` are the errors of the balance, which hold more
+/// of the noise.
 pub fn agreeing(
     case: &Case,
     runs: &[Recorded],

@@ -1,8 +1,8 @@
 //! An equation for a residual that nothing listed explains.
 //!
 //! A law is a sum of up to three terms. A term is an amplitude in the unit of the target (newtons or watts) times one or two
-//! shapes: powers, saturation, decay, thresholds, bumps, steps, switches that latch, what follows late, waves, pulses. Each shape is a pure number, because its scale carries
-//! the unit of its variable; so every law has the right unit, and the effect `expression` runs its text as it is.
+//! shapes: powers, saturation, decay, thresholds, bumps, steps, switches that latch, what follows late, waves, pulses. Each shape is a pure number,
+//! because its scale carries the unit of its variable; so every law has the right unit, and the effect `expression` runs its text as it is.
 //!
 //! 1. **Screening.** Every term of a dictionary is held against the whitened residual by scalar products; what the free
 //!    parameters of the model can imitate is projected out first, with their priors.

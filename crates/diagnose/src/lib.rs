@@ -89,7 +89,6 @@ mod steps;
 mod straying;
 mod stuck;
 mod student;
-mod swings;
 mod tails;
 mod thinned;
 mod together;

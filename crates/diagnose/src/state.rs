@@ -11,7 +11,6 @@ use crate::noise::Noises;
 use crate::profile::{Function, Profile, Spread, Widths};
 use crate::recorded::share_paths;
 use crate::rivals::twin;
-use crate::swings;
 use crate::trial::{Pool, Trial};
 use nalgebra::DVector;
 
@@ -200,10 +199,6 @@ impl<'a> State<'a> {
             let all = || function.values.iter().flat_map(|(values, sds)| values.iter().zip(sds.iter()));
             let reach = all().fold(f64::NEG_INFINITY, |most, (value, _)| most.max(*value))
                 - all().fold(f64::INFINITY, |least, (value, _)| least.min(*value));
-            let loads = self.id(&part.trial) == "payload_change" && self.timed(part);
-            if loads && swings::mostly(&function.values) {
-                return false;
-            }
             let by_run = self.cause(&part.trial).by_run;
             let widest = all().map(|(_, sd)| *sd).fold(0.0, f64::max);
             if by_run && !term.has_room_for(reach, SIGMAS * widest) {

@@ -319,7 +319,8 @@ fn first_sound(laws: Vec<Law>, sought: &Sought) -> Option<Law> {
 
 /// Whether a law draws no map, each of its terms is known, and what is lost on a way is that.
 fn is_sound(law: &Law, sought: &Sought) -> bool {
-    !is_map(law, sought.target, sought.placed) && !is_undetermined(law) && is_lost(law, sought)
+    let known = !is_undetermined(law) && !is_hurried(law);
+    !is_map(law, sought.target, sought.placed) && known && is_lost(law, sought)
 }
 
 /// Whether what is lost on a way is lost, and is not all of it.
@@ -345,6 +346,13 @@ fn is_map(law: &Law, target: Target, placed: bool) -> bool {
     let fades = !placed && law.text.contains(FADES);
     let alone = terms.len() == 1 && (law.names(WAVE) || fades) && !patches;
     !alone && terms.iter().any(|term| only(term))
+}
+
+/// Whether what follows late does so at once, nearly: a speed that is ahead of itself by a moment is an acceleration, which forces make.
+fn is_hurried(law: &Law) -> bool {
+    /// The shortest time constant that a law may have [s]; the search goes a little below it.
+    const SHORTEST_S: f64 = 2.5;
+    law.constants.iter().any(|constant| constant.name.starts_with("lag") && constant.value < SHORTEST_S)
 }
 
 /// Whether a term of a law may as well be none: several that take each other back say nothing of any.
@@ -579,7 +587,9 @@ fn with_less(
     let terms: Vec<Part> = law
         .each
         .iter()
-        .filter(|term| !is_map(term, sought.target, sought.placed) && is_lost(term, sought))
+        .filter(|term| {
+            !is_map(term, sought.target, sought.placed) && is_lost(term, sought) && !is_hurried(term)
+        })
         .map(|term| add(case, system, pool, term, sought))
         .collect();
     let mut all: Vec<Vec<Part>> = terms.iter().map(|term| vec![term.clone()]).collect();

@@ -21,7 +21,7 @@ const WIDTHS: [f64; 3] = [0.05, 0.12, 0.3];
 /// Widths of steps, as shares of the spread.
 const EDGES: [f64; 2] = [0.02, 0.12];
 /// Time constants of what follows late [s].
-const LAGS_S: [f64; 6] = [1.0, 2.5, 6.0, 15.0, 40.0, 100.0];
+const LAGS_S: [f64; 5] = [3.0, 6.0, 15.0, 40.0, 100.0];
 /// Powers of what is followed.
 const FOLLOWED: [u8; 2] = [1, 2];
 /// Turns of an angle in one turn of the vehicle: wind and slope have one, a crown or furrows two.

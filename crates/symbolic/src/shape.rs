@@ -265,8 +265,8 @@ impl Factor {
         const POWERS: (f64, f64) = (0.2, 6.0);
         /// Levels: beyond it a pulse is on, or off, for less than a tenth of its period.
         const MOST_LEVEL: f64 = 0.95;
-        /// A lag that is shorter is a sensor's [s].
-        const SHORTEST_S: f64 = 0.5;
+        /// A lag that is shorter is a sensor's, and what is ahead of it an acceleration [s].
+        const SHORTEST_S: f64 = 2.0;
         /// And one that is longer than this share of the longest run is a drift.
         const LONGEST: f64 = 1.0;
         match free {

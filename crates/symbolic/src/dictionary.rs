@@ -89,7 +89,9 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
                 all.push(make(Shape::Below(power), of.round_size(), centre));
             }
             all.extend(WIDTHS.map(|width| make(Shape::Bump, width * of.spread(), centre)));
-            all.extend(EDGES.map(|width| make(Shape::Step, width * of.spread(), centre)));
+            for step in [Shape::Step, Shape::StepDown] {
+                all.extend(EDGES.map(|width| make(step, width * of.spread(), centre)));
+            }
         }
     };
     // Where a switch goes on and off: every two of the centres that are far enough apart.
@@ -197,7 +199,7 @@ fn short(variables: &[Checked], index: usize) -> Vec<Factor> {
                 all.push(make(Shape::Under, 1.0, at(0.5)));
             }
             all.push(make(Shape::Decay, 0.4 * of.spread(), 0.0));
-            all.push(make(Shape::Step, 0.05 * of.spread(), at(0.5)));
+            all.extend([Shape::Step, Shape::StepDown].map(|step| make(step, 0.05 * of.spread(), at(0.5))));
         }
         Kind::Signed => {
             all.push(make(Shape::Power(1.0), of.round_size(), 0.0));

@@ -165,7 +165,7 @@ impl Hunt<'_> {
                 return Err(SymbolicError::Interrupted);
             }
             Ok(amplitudes(self.bench, terms)
-                .map(|start| self.on(polish(self.bench, levelled(self.bench, start), STEPS))))
+                .map(|start| self.turned(self.on(polish(self.bench, levelled(self.bench, start), STEPS)))))
         };
         let all: Result<Vec<Option<Polished>>, _> = starts.into_par_iter().map(one).collect();
         Ok(all?.into_iter().flatten().collect())
@@ -185,6 +185,23 @@ impl Hunt<'_> {
             let other = amplitudes(self.bench, terms).map(|start| polish(self.bench, start, STEPS));
             if let Some(other) = other.filter(|other| self.rank(other) < self.rank(&law) + AS_GOOD) {
                 law = other;
+            }
+        }
+        law
+    }
+
+    /// The same with steps the other way where that says more: of two that differ by a constant the screening knows which is better
+    /// by itself alone.
+    fn turned(&self, law: Polished) -> Polished {
+        let mut law = law;
+        for index in 0..law.terms.len() {
+            for other in law.terms[index].turned() {
+                let mut terms = law.terms.clone();
+                terms[index] = other;
+                let other = amplitudes(self.bench, terms).filter(|other| other.cost < law.cost - AS_GOOD);
+                if let Some(other) = other {
+                    law = polish(self.bench, other, STEPS);
+                }
             }
         }
         law

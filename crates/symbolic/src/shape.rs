@@ -36,6 +36,8 @@ pub(crate) enum Shape {
     Below(u8),
     /// ½ (1 + tanh((u − c)/s))
     Step,
+    /// ½ (1 − tanh((u − c)/s)): what is there below alone, which the same above with a constant says in two terms
+    StepDown,
     /// exp(−((u − c)/s)²)
     Bump,
     /// A switch: on from c upward until u is at c − s or below
@@ -79,7 +81,7 @@ impl Shape {
             }
             Self::FreePower(_) => &[Free::Power],
             Self::From | Self::Under | Self::Above(_) | Self::Below(_) => &[Free::Centre],
-            Self::Step | Self::Bump | Self::Latch => &[Free::Centre, Free::Scale],
+            Self::Step | Self::StepDown | Self::Bump | Self::Latch => &[Free::Centre, Free::Scale],
             Self::Pulse(_) => &[Free::Centre, Free::Scale, Free::Level],
             Self::Lag(..) | Self::Ahead(_) => &[Free::Lag],
             _ => &[],
@@ -159,6 +161,7 @@ impl Factor {
             Shape::Above(p) => ((u - c) / s).max(0.0).powi(i32::from(p)),
             Shape::Below(p) => ((c - u) / s).max(0.0).powi(i32::from(p)),
             Shape::Step => 0.5 * (1.0 + ((u - c) / s).tanh()),
+            Shape::StepDown => 0.5 * (1.0 - ((u - c) / s).tanh()),
             Shape::Bump => (-((u - c) / s).powi(2)).exp(),
             Shape::Latch => f64::from(u8::from(u >= c)),
             Shape::Lag(p, _) => (u / s).powi(i32::from(p)),
@@ -219,6 +222,7 @@ impl Factor {
             Shape::Above(p) => format!("max(({u} - {centre}) / {scale}, 0)^{p}"),
             Shape::Below(p) => format!("max(({centre} - {u}) / {scale}, 0)^{p}"),
             Shape::Step => format!("0.5 * (1 + tanh(({u} - {centre}) / {scale}))"),
+            Shape::StepDown => format!("0.5 * (1 - tanh(({u} - {centre}) / {scale}))"),
             Shape::Bump => format!("exp(-(({u} - {centre}) / {scale})^2)"),
             Shape::Latch => format!("latched({u}, {centre}, {centre} - {scale})"),
             Shape::Lag(1, _) => format!("lagged({u} / {scale}, {power})"),
@@ -313,13 +317,14 @@ impl Factor {
         1 + self.shape.free().len() + usize::from(self.shape.has_phase())
     }
 
-    /// What it is, without its constants: variable, shape, exponent.
+    /// What it is, without its constants: variable, shape, exponent. What steps down is what steps up, less a constant.
     pub fn family(&self) -> (usize, String) {
         let shape = match self.shape {
             Shape::FreePower(_) => Shape::FreePower(1.0),
             Shape::Pulse(_) => Shape::Pulse(0.0),
             Shape::Lag(p, _) => Shape::Lag(p, 0.0),
             Shape::Ahead(_) => Shape::Ahead(0.0),
+            Shape::StepDown => Shape::Step,
             other => other,
         };
         (self.variable, format!("{shape:?}"))

@@ -32,6 +32,21 @@ impl Term {
         }))
     }
 
+    /// The same with one of its steps the other way, for each of them.
+    pub fn turned(&self) -> Vec<Self> {
+        let turned = |shape: Shape| match shape {
+            Shape::Step => Some(Shape::StepDown),
+            Shape::StepDown => Some(Shape::Step),
+            _ => None,
+        };
+        let of = |place: usize| {
+            let mut other = self.clone();
+            other.factors[place].shape = turned(other.factors[place].shape)?;
+            Some(other)
+        };
+        (0..self.factors.len()).filter_map(of).collect()
+    }
+
     /// How many linear columns it is.
     pub fn width(&self) -> usize {
         if self.factors.iter().any(|factor| factor.shape.has_phase()) { 2 } else { 1 }

@@ -55,6 +55,19 @@ fn what_grows_towards_a_level_is_found_as_that() {
     assert!(r2 > 0.95 && law.terms == 1 && law.text.contains("1 - exp"), "{r2} {}", law.text);
 }
 
+/// Above a speed it would have to take what a constant gives, and that is known better.
+#[test]
+fn what_is_there_below_a_speed_alone_is_found_in_one_term() {
+    const LEVEL_M_S: f64 = 4.37;
+    const WIDTH_M_S: f64 = 0.4;
+    let below = |at: &At| 1700.0 / (1.0 + ((at.v - LEVEL_M_S) / (0.5 * WIDTH_M_S)).exp());
+    let (found, r2) = found(11, 150.0, below);
+    let law = found.law().unwrap();
+    assert!(r2 > 0.95 && law.terms == 1 && law.text.contains("1 - tanh"), "{r2} {}", law.text);
+    close(constant(&found, "a1_n"), 1700.0);
+    close(constant(&found, "v1_m_s"), LEVEL_M_S);
+}
+
 #[test]
 fn a_product_of_two_variables_is_found() {
     let (found, r2) = found(3, 100.0, |at| 50.0 * at.v * (at.heading - 0.9).cos());

@@ -248,12 +248,19 @@ fn beside(
     };
     for parts in candidates {
         let Some(stand) = state.settle(&parts, &found.stand.noises) else { continue };
-        let more = if within(&stand) { state.with_listed(&stand, &found, &[]) } else { None };
+        let more = if within(&stand) { state.with_listed(&stand, &found, &[]) } else { Vec::new() };
         if !courses.is_empty() {
-            lasting.extend(state.with_listed(&stand, &found, &courses));
+            lasting.extend(state.with_listed(&stand, &found, &courses).into_iter().take(1));
             lasting.push(stand.clone());
         }
-        for stand in [more, Some(stand)].into_iter().flatten() {
+        // Where the likeliest leaves a free parameter strained, one that takes the strain off it is what was missing.
+        let relieved = match &more[..] {
+            [first, others @ ..] if !is_sound_set(first) => {
+                others.iter().find(|set| is_sound_set(set)).cloned()
+            }
+            _ => None,
+        };
+        for stand in more.into_iter().take(1).chain(relieved).chain([stand]) {
             let simpler = state.simpler(&stand, &found.stand);
             let more = worth(&stand) - worth(&found.stand);
             let margin = state.margin(&found, &stand);
@@ -560,10 +567,10 @@ impl State<'_> {
             .any(|law| reduced.squared_correlation(&law.trial.columns, &columns, &nuisance, &sd) > THEIRS)
     }
 
-    /// A set with the listed cause beside that makes it likeliest, but for some; faults of sensors were looked for before. Of a wind of
+    /// A set with a listed cause beside, the likeliest first, but for some; faults of sensors were looked for before. Of a wind of
     /// each run the columns are those of a breath, unless it was found: what goes with speed takes it for a strong one.
-    fn with_listed(&self, stand: &Stand, found: &Found, but: &[&'static str]) -> Option<Stand> {
-        let reduced = self.reduced(&stand.noises, &stand.parts)?;
+    fn with_listed(&self, stand: &Stand, found: &Found, but: &[&'static str]) -> Vec<Stand> {
+        let Some(reduced) = self.reduced(&stand.noises, &stand.parts) else { return Vec::new() };
         let faults = self.case.causes.iter().filter(|cause| cause.form == Form::Measured);
         let banned: Vec<&str> = faults.map(|cause| cause.id).chain(but.iter().copied()).collect();
         let known = |part: &Part| found.stand.parts.iter().any(|own| own.trial.columns == part.trial.columns);
@@ -571,7 +578,7 @@ impl State<'_> {
             let part = stand.parts.last();
             part.is_some_and(|part| !self.cause(&part.trial).blows_by_run() || known(part))
         };
-        self.contest(stand, &reduced, &banned).into_iter().map(|one| one.stand).find(told)
+        self.contest(stand, &reduced, &banned).into_iter().map(|one| one.stand).filter(told).collect()
     }
 }
 

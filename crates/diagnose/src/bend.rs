@@ -9,9 +9,10 @@ use crate::catalogue::{Cause, Form};
 use crate::gram::Column;
 use crate::mirror::{is_whole, lean};
 use crate::profile::COARSE;
+use crate::recorded::Recorded;
 use crate::search::Found;
 use crate::state::{Part, Stand, State};
-use crate::trial::{Pool, Trial, add_trial_at, effect, for_run};
+use crate::trial::{Pool, Trial, add_trial_at, effect, effect_beside, for_run};
 use crate::{Case, DiagnoseError, System};
 use nalgebra::DVector;
 
@@ -23,6 +24,12 @@ const CLOSE: f64 = 0.5;
 const STRAIGHT: f64 = 0.02;
 /// Columns are made anew so many times: each time the size that they are made at is closer.
 const ROUNDS: usize = 4;
+
+/// What the parameters of a trial are, and the free ones beside them where those have a say in what they do.
+struct Size {
+    own: Vec<f64>,
+    free: Option<Vec<f64>>,
+}
 
 /// Adds trials with columns made at the size that was found, of the best causes that are not in proportion. Whether there
 /// was anything to add.
@@ -53,6 +60,8 @@ pub fn bend(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> Res
             pool.trials.iter().filter(same).for_each(&mut consider);
         }
     }
+    // An engine that holds back burns nothing, however much less it would be asked for: where that ends the free parameters say.
+    let powers = system.kinds.iter().any(|kind| kind.is_power());
     let mut added = false;
     for trial in chosen {
         let accepted = found.accepted.iter().any(|one| one.trial.columns == trial.columns);
@@ -62,13 +71,18 @@ pub fn bend(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> Res
             .map(|one| Part { trial: one.trial.clone(), spread: None })
             .collect();
         let noises = if accepted { &found.noises.1 } else { &found.noises.0 };
-        let size = |pool: &Pool, trial: &Trial| -> Option<Vec<f64>> {
+        let size = |pool: &Pool, trial: &Trial| -> Option<Size> {
             let state = State { case, system, pool, fit: &case.fit };
             let mut parts = others.clone();
             parts.push(Part { trial: trial.clone(), spread: None });
             let (_, beta) = state.weighed(&parts, noises)?;
             let first = beta.len() - trial.columns.len();
-            Some(beta.iter().skip(first).copied().collect())
+            let own = beta.iter().skip(first).copied().collect();
+            let parameters = case.study.parameters.iter().zip(beta.iter());
+            let free = parameters.map(|(parameter, change)| {
+                (parameter.value + change).clamp(parameter.bounds.0, parameter.bounds.1)
+            });
+            Some(Size { own, free: powers.then(|| free.collect()) })
         };
         added |= bent(case, system, pool, &trial, &size)?;
     }
@@ -157,7 +171,8 @@ pub fn winds(case: &Case, system: &System, pool: &mut Pool) -> Result<(), Diagno
     for side in 0..SIDES {
         // Never quite along a part, which would then be nought and have no column.
         let (east, north) = (std::f64::consts::TAU * (f64::from(side) + 0.3) / f64::from(SIDES)).sin_cos();
-        let made = divided(case, system, &small, &[FRESH_M_S * north, FRESH_M_S * east])?;
+        let size = Size { own: vec![FRESH_M_S * north, FRESH_M_S * east], free: None };
+        let made = divided(case, system, &small, &size)?;
         let first = pool.columns.len();
         let columns = (first..first + made.len()).collect();
         pool.columns.extend(made);
@@ -173,16 +188,17 @@ fn bent(
     system: &System,
     pool: &mut Pool,
     trial: &Trial,
-    size: &dyn Fn(&Pool, &Trial) -> Option<Vec<f64>>,
+    size: &dyn Fn(&Pool, &Trial) -> Option<Size>,
 ) -> Result<bool, DiagnoseError> {
     let cause = &case.causes[trial.cause];
     let (columns, trials) = (pool.columns.len(), pool.trials.len());
     let mut current = trial.clone();
     for round in 0..ROUNDS {
-        let Some(mut values) = size(pool, &current) else { break };
+        let Some(mut size) = size(pool, &current) else { break };
         if round == 0 && is_whole(cause) {
-            lean(values.iter_mut());
+            lean(size.own.iter_mut());
         }
+        let values = &size.own;
         if values
             .iter()
             .zip(&trial.terms)
@@ -190,9 +206,9 @@ fn bent(
         {
             break;
         }
-        let made = divided(case, system, trial, &values)?;
+        let made = divided(case, system, trial, &size)?;
         let old: Vec<&Column> = current.columns.iter().map(|column| &pool.columns[*column]).collect();
-        if missed(&made, &old, &values) < STRAIGHT {
+        if missed(&made, &old, values) < STRAIGHT {
             break;
         }
         if round > 0 {
@@ -212,12 +228,16 @@ fn divided(
     case: &Case,
     system: &System,
     trial: &Trial,
-    values: &[f64],
+    Size { own: values, free }: &Size,
 ) -> Result<Vec<Column>, DiagnoseError> {
     let cause = &case.causes[trial.cause];
     let with = |within: &dyn Fn(usize) -> bool| -> Result<Column, DiagnoseError> {
         let all = placed(cause, trial, values, within);
-        effect(case, system, cause, 1.0, &|run| for_run(&cause.written(&all), cause, run))
+        let text = |run: &Recorded| for_run(&cause.written(&all), cause, run);
+        match free {
+            Some(free) => effect_beside(case, system, cause, &text, free),
+            None => effect(case, system, cause, 1.0, &text),
+        }
     };
     let whole = with(&|_| true)?;
     if values.len() == 1 {

@@ -225,6 +225,24 @@ pub fn effect(
     Ok(case.column(system, &shown(case, system, cause, step, text)?))
 }
 
+/// The same per unit of a cause written in full, beside free parameters of these values.
+pub fn effect_beside(
+    case: &Case,
+    system: &System,
+    cause: &Cause,
+    text: &(impl Fn(&Recorded) -> String + Sync),
+    values: &[f64],
+) -> Result<Column, DiagnoseError> {
+    let before = case.said_so_far_with(case.study.scenario(), values)?;
+    let after = case.said_beside(text, values, &case.kinds)?;
+    let of_kind = |kind: Kind| {
+        let mut samples = changes(case, kind, (&before, &after), 1.0);
+        mute(cause, kind, system, &mut samples);
+        (kind, samples)
+    };
+    Ok(case.column(system, &tried(cause, system).into_iter().map(of_kind).collect()))
+}
+
 impl Case<'_> {
     /// The rows of what is shown in samples, and of nothing elsewhere.
     pub fn column(&self, system: &System, shown: &Shown) -> Column {
@@ -363,10 +381,15 @@ pub fn for_run(text: &str, cause: &Cause, run: &Recorded) -> String {
 
 /// What a change of the model does to the residual of each run, for a step of one.
 fn difference(case: &Case, kind: Kind, after: &[Said], step: f64) -> Vec<Vec<f64>> {
+    changes(case, kind, (case.said_so_far(), after), step)
+}
+
+/// The same from before to after.
+fn changes(case: &Case, kind: Kind, (before, after): (&[Said], &[Said]), step: f64) -> Vec<Vec<f64>> {
     let of_run = |(run, (before, after)): (&Recorded, (&Said, &Said))| {
         change(kind, run, before, after).iter().map(|value| -value / step).collect()
     };
-    case.runs.iter().zip(case.said_so_far().iter().zip(after)).map(of_run).collect()
+    case.runs.iter().zip(before.iter().zip(after)).map(of_run).collect()
 }
 
 /// The column of one term.

@@ -118,6 +118,7 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
             curved(&mut all, &bends, of.size());
             edges(&mut all);
             if of.known.kind == Kind::Size {
+                curved(&mut all, &[Shape::Peak], of.size());
                 latches(&mut all);
                 late(&mut all, of.round_size(), &FOLLOWED);
             }

@@ -22,6 +22,9 @@ pub(crate) enum Shape {
     Saturation,
     /// 1 / (1 + |u|/s): as 1/u, and finite at rest.
     Hyperbola,
+    /// 2 |u/s| / (1 + (u/s)²): greatest at s, as what eddy currents and slipping couplings pull with (Kloss, *Archiv für
+    /// Elektrotechnik* 5, 1916).
+    Peak,
     /// exp(−u/s)
     Decay,
     /// 1 − exp(−u/s): what grows towards a level.
@@ -76,9 +79,13 @@ impl Shape {
     /// Which constants are free.
     pub fn free(self) -> &'static [Free] {
         match self {
-            Self::Tanh | Self::Saturation | Self::Hyperbola | Self::Decay | Self::Rise | Self::Wave => {
-                &[Free::Scale]
-            }
+            Self::Tanh
+            | Self::Saturation
+            | Self::Hyperbola
+            | Self::Peak
+            | Self::Decay
+            | Self::Rise
+            | Self::Wave => &[Free::Scale],
             Self::FreePower(_) => &[Free::Power],
             Self::From | Self::Under | Self::Above(_) | Self::Below(_) => &[Free::Centre],
             Self::Step | Self::StepDown | Self::Bump | Self::Latch => &[Free::Centre, Free::Scale],
@@ -130,7 +137,7 @@ fn takes_size(shape: Shape, of: &Checked) -> bool {
     match shape {
         Shape::Power(p) => p.fract() != 0.0 || (both && p.rem_euclid(2.0) == 1.0),
         Shape::FreePower(_) => true,
-        Shape::Saturation | Shape::Hyperbola => of.negative || lost,
+        Shape::Saturation | Shape::Hyperbola | Shape::Peak => of.negative || lost,
         Shape::Decay | Shape::Rise | Shape::Latch => both,
         Shape::Lag(p, _) => both && p % 2 == 1,
         Shape::Tanh => lost && !of.negative,
@@ -154,6 +161,7 @@ impl Factor {
             Shape::Tanh => (u / s).tanh(),
             Shape::Saturation => u / (u + s),
             Shape::Hyperbola => 1.0 / (1.0 + u / s),
+            Shape::Peak => 2.0 * (u / s) / (1.0 + (u / s).powi(2)),
             Shape::Decay => (-u / s).exp(),
             Shape::Rise => 1.0 - (-u / s).exp(),
             Shape::From => (u - c) / s,
@@ -213,6 +221,7 @@ impl Factor {
             Shape::Tanh => format!("tanh({u} / {scale})"),
             Shape::Saturation => format!("({u} / ({u} + {scale}))"),
             Shape::Hyperbola => format!("(1 / (1 + {u} / {scale}))"),
+            Shape::Peak => format!("(2 * ({u} / {scale}) / (1 + ({u} / {scale})^2))"),
             Shape::Decay => format!("exp(-{u} / {scale})"),
             Shape::Rise => format!("(1 - exp(-{u} / {scale}))"),
             Shape::From => format!("(({u} - {centre}) / {scale})"),

@@ -68,6 +68,17 @@ fn what_is_there_below_a_speed_alone_is_found_in_one_term() {
     close(constant(&found, "v1_m_s"), LEVEL_M_S);
 }
 
+/// A retarder that nobody switched off pulls hardest at one speed.
+#[test]
+fn what_eddy_currents_pull_with_is_found_with_its_peak() {
+    const PEAK_M_S: f64 = 3.7;
+    let (found, r2) = found(12, 60.0, |at| 620.0 * 2.0 / (at.v / PEAK_M_S + PEAK_M_S / at.v));
+    let law = found.law().unwrap();
+    assert!(r2 > 0.95 && law.terms == 1 && law.text.contains("/ (1 + (v / v1_m_s)^2)"), "{r2} {}", law.text);
+    close(constant(&found, "a1_n"), 620.0);
+    close(constant(&found, "v1_m_s"), PEAK_M_S);
+}
+
 #[test]
 fn a_product_of_two_variables_is_found() {
     let (found, r2) = found(3, 100.0, |at| 50.0 * at.v * (at.heading - 0.9).cos());

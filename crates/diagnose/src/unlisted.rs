@@ -12,6 +12,7 @@ use crate::search::{Found, MOST_CAUSES, OTHER_WORDS, TOLERANCE, concluded, worth
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Trial, add_trial};
 use crate::{Case, DiagnoseError, System};
+use headland_calibrate::statistics::median;
 use headland_symbolic::{Law, Target};
 
 /// A law has to be worth so much more than the listed causes: odds of four hundred to one.
@@ -138,6 +139,11 @@ fn candidates(
         .any(|(kind, noise)| *kind == sought.kind && noise.lasting() > WANDERS * noise.sensor);
     if wanders && rows <= LONG_ROWS && sought.target != Target::Share {
         starts.extend(without_each(case, &listed, sought.kind));
+    }
+    // What two of three say may be one law beside the third.
+    if rows <= MANY_ROWS && sought.target != Target::Share {
+        let state = State { case, system, pool, fit: &case.fit };
+        starts.extend(state.most_telling(found, sought.kind).map(|part| vec![part]));
     }
     // What differs from run to run for no reason may do so by what each run was driven in.
     let reasons: Vec<Part> =
@@ -324,9 +330,10 @@ fn first_sound(laws: Vec<Law>, sought: &Sought) -> Option<Law> {
     laws.into_iter().next().filter(|law| is_sound(law, sought))
 }
 
-/// Whether a law draws no map, each of its terms is known, and what is lost on a way is that.
+/// Whether a law draws no map, each of its terms is known and varies, and what is lost on a way is that.
 fn is_sound(law: &Law, sought: &Sought) -> bool {
-    let known = !is_undetermined(law) && !is_hurried(law);
+    let level = if law.each.is_empty() { is_level(law) } else { law.each.iter().any(is_level) };
+    let known = !is_undetermined(law) && !is_hurried(law) && !level;
     !is_map(law, sought.target, sought.placed) && known && is_lost(law, sought)
 }
 
@@ -362,6 +369,24 @@ fn is_hurried(law: &Law) -> bool {
     law.constants.iter().any(|constant| constant.name.starts_with("lag") && constant.value < SHORTEST_S)
 }
 
+/// Whether a term is the same nearly wherever it is at all: a level has names enough in the library.
+fn is_level(term: &Law) -> bool {
+    /// Of the median, below which it is not there, and about which it is the same.
+    const NOTHING: f64 = 0.01;
+    const ABOUT: f64 = 0.2;
+    /// In this share of the samples.
+    const MOST: f64 = 0.95;
+    let sizes = term.prediction.iter().flatten().map(|value| value.abs());
+    let sizes: Vec<f64> = sizes.filter(|size| *size > 0.0).collect();
+    if sizes.is_empty() {
+        return true;
+    }
+    let middle = median(&sizes);
+    let there = || sizes.iter().filter(|size| **size > NOTHING * middle);
+    let same = there().filter(|size| (**size - middle).abs() < ABOUT * middle).count();
+    same as f64 > MOST * there().count() as f64
+}
+
 /// Whether a term of a law may as well be none: several that take each other back say nothing of any.
 fn is_undetermined(law: &Law) -> bool {
     let nothing = |constant: &headland_symbolic::Constant| {
@@ -377,21 +402,24 @@ impl State<'_> {
         if self.simpler(stand, &found.stand) && found.stand.parts.iter().all(|part| part.spread.is_none()) {
             return PLAINER;
         }
-        // Nor has a consumer that is switched with time. And what shows where the law does nothing, as the resistance of a battery
-        // does in its voltage, leaves nothing there that a formula could bend to; nor does a map that stays where a law is simpler.
+        // Nor has what is switched with time. And what shows where the law does nothing, as the resistance of a battery does in its
+        // voltage, leaves nothing there that a formula could bend to; nor does a map that stays where a law is simpler.
         let simpler = self.simpler(stand, &found.stand);
         let stays = |part: &Part| stand.parts.iter().any(|own| own.trial.columns == part.trial.columns);
         let any = |part: &Part| {
             let cause = self.cause(&part.trial);
-            let over_time = cause.form == Form::OverTime && cause.balances.iter().all(|kind| kind.is_power());
+            let over_time = cause.form == Form::OverTime;
             let kept = simpler && part.spread.is_some() && stays(part);
             cause.by_run || over_time || kept || self.is_elsewhere(part, stand, &found.stand)
         };
         let (shapeless, shaped): (Vec<Part>, Vec<Part>) = found.stand.parts.iter().cloned().partition(any);
-        // Beside all that has a shape a law says why runs differ.
+        // Beside all that has a shape a law says why runs and times differ.
         let named = |part: &Part| stand.parts.iter().any(|own| self.id(&own.trial) == self.id(&part.trial));
-        let by_run = |part: &Part| self.cause(&part.trial).by_run;
-        if shaped.iter().all(named) && shapeless.iter().any(|part| by_run(part) && !named(part)) {
+        let differs = |part: &&Part| {
+            let cause = self.cause(&part.trial);
+            cause.by_run || cause.form == Form::OverTime
+        };
+        if shaped.iter().all(named) && shapeless.iter().filter(differs).any(|part| !named(part)) {
             return MARGIN;
         }
         let alone = if shapeless.is_empty() { None } else { self.settle(&shapeless, &found.stand.noises) };
@@ -405,6 +433,27 @@ impl State<'_> {
         };
         let share = if simpler { SIMPLER } else { BETTER };
         MARGIN + share * fewer * brought.max(0.0)
+    }
+
+    /// The cause of a set of three or more, all of numbers and two of them of one balance, without which the recordings are least likely.
+    fn most_telling(&self, found: &Found, kind: Kind) -> Option<Part> {
+        let listed = &found.stand.parts;
+        let able = |part: &Part| part.spread.is_none() && self.cause(&part.trial).law.is_none();
+        let works = |part: &&Part| kind.among(self.cause(&part.trial).balances);
+        if listed.len() <= PATCHES
+            || !listed.iter().all(able)
+            || listed.iter().filter(works).count() < PATCHES
+        {
+            return None;
+        }
+        let without = |left: usize| {
+            let others = listed.iter().enumerate().filter(|(place, _)| *place != left);
+            others.map(|(_, part)| part.clone()).collect::<Vec<_>>()
+        };
+        let worth_without =
+            |place: usize| self.settle(&without(place), &found.stand.noises).map(|one| worth(&one));
+        let told = (0..listed.len()).filter_map(|place| Some((worth_without(place)?, place)));
+        told.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, place)| listed[place].clone())
     }
 
     /// Whether a part of what was found does nothing to the balances that the laws of a set do something to.
@@ -595,7 +644,10 @@ fn with_less(
         .each
         .iter()
         .filter(|term| {
-            !is_map(term, sought.target, sought.placed) && is_lost(term, sought) && !is_hurried(term)
+            !is_map(term, sought.target, sought.placed)
+                && is_lost(term, sought)
+                && !is_hurried(term)
+                && !is_level(term)
         })
         .map(|term| add(case, system, pool, term, sought))
         .collect();

@@ -124,7 +124,7 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
             }
         }
         Kind::Way => {
-            curved(&mut all, &[Shape::Hyperbola, Shape::Decay], of.size());
+            curved(&mut all, &[Shape::Hyperbola, Shape::Decay, Shape::Rise], of.size());
             for share in CENTRES {
                 let centre = of.low + share * of.spread();
                 all.extend(EDGES.map(|width| make(Shape::Step, width * of.spread(), centre)));
@@ -146,6 +146,9 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
             // Where a speed is held, the noise of the force decides on the sign of an acceleration.
             if of.known.name != ACCELERATION {
                 curved(&mut all, &[Shape::Tanh], of.size());
+            }
+            if of.negative {
+                curved(&mut all, &[Shape::Saturation], of.size());
             }
             // What the drive has warmed, and a coupling that locks above a force.
             if of.known.name == DRIVE {

@@ -5,6 +5,7 @@
 //! which for two of them gives the whole effect without a rest.
 //! Source: L. S. Shapley, in *Contributions to the Theory of Games* II (1953), 307 (the division).
 
+use crate::balance::Kind;
 use crate::catalogue::{Cause, Form};
 use crate::gram::Column;
 use crate::mirror::{is_whole, lean};
@@ -61,7 +62,7 @@ pub fn bend(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> Res
         }
     }
     // An engine that holds back burns nothing, however much less it would be asked for: where that ends the free parameters say.
-    let powers = system.kinds.iter().any(|kind| kind.is_power());
+    let fuel = system.has(Kind::Fuel);
     let mut added = false;
     for trial in chosen {
         let accepted = found.accepted.iter().any(|one| one.trial.columns == trial.columns);
@@ -82,7 +83,7 @@ pub fn bend(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> Res
             let free = parameters.map(|(parameter, change)| {
                 (parameter.value + change).clamp(parameter.bounds.0, parameter.bounds.1)
             });
-            Some(Size { own, free: powers.then(|| free.collect()) })
+            Some(Size { own, free: fuel.then(|| free.collect()) })
         };
         added |= bent(case, system, pool, &trial, &size)?;
     }

@@ -369,22 +369,19 @@ fn is_hurried(law: &Law) -> bool {
     law.constants.iter().any(|constant| constant.name.starts_with("lag") && constant.value < SHORTEST_S)
 }
 
-/// Whether a term is the same nearly wherever it is at all: a level has names enough in the library.
+/// Whether a term is the same nearly always, but for a vehicle that stands now and then: a level has names enough in the library.
 fn is_level(term: &Law) -> bool {
-    /// Of the median, below which it is not there, and about which it is the same.
-    const NOTHING: f64 = 0.01;
+    /// So far from the median, as a share of it, is the same.
     const ABOUT: f64 = 0.2;
-    /// In this share of the samples.
-    const MOST: f64 = 0.95;
-    let sizes = term.prediction.iter().flatten().map(|value| value.abs());
-    let sizes: Vec<f64> = sizes.filter(|size| *size > 0.0).collect();
+    /// In this share of the samples. What is switched is off for longer.
+    const MOST: f64 = 0.85;
+    let sizes: Vec<f64> = term.prediction.iter().flatten().map(|value| value.abs()).collect();
     if sizes.is_empty() {
         return true;
     }
     let middle = median(&sizes);
-    let there = || sizes.iter().filter(|size| **size > NOTHING * middle);
-    let same = there().filter(|size| (**size - middle).abs() < ABOUT * middle).count();
-    same as f64 > MOST * there().count() as f64
+    let same = sizes.iter().filter(|size| (**size - middle).abs() <= ABOUT * middle).count();
+    same as f64 > MOST * sizes.len() as f64
 }
 
 /// Whether a term of a law may as well be none: several that take each other back say nothing of any.

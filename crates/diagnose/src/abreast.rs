@@ -21,13 +21,23 @@ pub type Spreaded<'p, 'a> = (&'p Profile<'a>, &'p Spread);
 /// Functions that act on the same rows.
 pub struct Abreast<'p, 'a> {
     members: Vec<Spreaded<'p, 'a>>,
-    /// Knots of every group of every member, and the place of the first of them among all.
-    groups: Vec<Vec<(Group, usize)>>,
+    groups: Vec<Placed>,
     knots: usize,
 }
 
-/// The knots of all members: factor of their precision, products with the other columns, ln |P| of what was known before.
-struct Solved {
+/// The knots of every group of a function, and the place of the first of them among all.
+type Placed = Vec<(Group, usize)>;
+
+/// What rows say of the knots of all members: products among themselves and with the other columns, the residual last.
+pub struct Gathered {
+    groups: Vec<Placed>,
+    matrix: Band,
+    cross: DMatrix<f64>,
+}
+
+/// The same with what was known before: the factor of its precision, and ln |P| of what was known.
+pub struct Solved {
+    members: Vec<(Spread, Placed)>,
     factor: Factor,
     cross: DMatrix<f64>,
     log_prior: f64,
@@ -37,7 +47,7 @@ impl<'p, 'a> Abreast<'p, 'a> {
     /// None where there are too many knots, or too many functions.
     pub fn of(members: &[Spreaded<'p, 'a>]) -> Option<Self> {
         let mut knots = 0;
-        let mut of_member = |(profile, spread): &Spreaded| -> Vec<(Group, usize)> {
+        let mut of_member = |(profile, spread): &Spreaded| -> Placed {
             let placed = |group: Group| {
                 let first = knots;
                 knots += group.count;
@@ -50,64 +60,13 @@ impl<'p, 'a> Abreast<'p, 'a> {
         able.then(|| Self { members: members.to_vec(), groups, knots })
     }
 
-    /// Eliminates the functions from products that were made already.
-    pub fn take(
-        &self,
-        whitened: &Whitened,
-        chunks: &[Chunk],
-        fit: &[bool],
-        reduced: &mut Reduced,
-    ) -> Option<()> {
-        let Solved { factor, mut cross, log_prior } = self.solved(whitened, chunks, fit)?;
-        factor.half_solve(&mut cross);
-        reduced.take(&(cross.transpose() * &cross), factor.log_determinant() - log_prior);
-        Some(())
-    }
-
-    /// The functions themselves, once the other columns have the values `beta`.
-    pub fn functions(
-        &self,
-        whitened: &Whitened,
-        chunks: &[Chunk],
-        fit: &[bool],
-        beta: &DVector<f64>,
-        widths: Widths,
-    ) -> Option<Vec<Function>> {
-        let Solved { factor, cross, .. } = self.solved(whitened, chunks, fit)?;
-        let values = factor.solve(&right_side(&cross, beta));
-        let sd = match widths {
-            Widths::Wanted => factor.inverse_diagonals().0.map(f64::sqrt),
-            Widths::Left => DVector::from_element(self.knots, f64::NAN),
-        };
-        let of_member = |((_, spread), groups): (&Spreaded, &Vec<(Group, usize)>)| {
-            let own = |(group, first): &(Group, usize)| {
-                (values.rows(*first, group.count).into_owned(), sd.rows(*first, group.count).into_owned())
-            };
-            Function {
-                groups: groups.iter().map(|(group, _)| group.clone()).collect(),
-                values: groups.iter().map(own).collect(),
-                spread: (*spread).clone(),
-                squares: vec![Vec::new(); groups.len()],
-            }
-        };
-        Some(self.members.iter().zip(&self.groups).map(of_member).collect())
-    }
-
-    fn solved(&self, whitened: &Whitened, chunks: &[Chunk], fit: &[bool]) -> Option<Solved> {
+    /// The products over the runs that are `fit`.
+    pub fn gathered(&self, whitened: &Whitened, chunks: &[Chunk], fit: &[bool]) -> Gathered {
         let mut matrix = Band::zeros(self.knots, self.knots);
         let mut cross = DMatrix::zeros(self.knots, whitened.width() + 1);
-        let mut log_prior = 0.0;
-        for ((_, spread), groups) in self.members.iter().zip(&self.groups) {
-            for (number, (group, first)) in groups.iter().enumerate() {
-                for (row, column, value) in precision_entries(number, group, spread) {
-                    matrix.add(first + row.max(column), first + row.min(column), value);
-                }
-                log_prior += log_precision(number, group, spread);
-            }
-        }
         // What each member does in a chunk, by its knots there.
         let of_chunk = |(index, chunk): (usize, &Chunk)| -> Vec<(usize, DMatrix<f64>)> {
-            let of_member = |((profile, _), groups): (&Spreaded, &Vec<(Group, usize)>)| {
+            let of_member = |((profile, _), groups): (&Spreaded, &Placed)| {
                 if !profile.touches(index) {
                     return None;
                 }
@@ -126,15 +85,64 @@ impl<'p, 'a> Abreast<'p, 'a> {
             chunks.par_iter().enumerate().map(of_chunk).collect();
         for (index, own) in of_chunks.iter().enumerate() {
             for (first, basis) in own {
-                matrix.add_block(*first, &(basis.transpose() * basis));
+                let transposed = basis.transpose();
+                matrix.add_block(*first, &(&transposed * basis));
                 for (other, beside) in own.iter().filter(|(other, _)| other < first) {
-                    matrix.add_beside(*first, *other, &(basis.transpose() * beside));
+                    matrix.add_beside(*first, *other, &(&transposed * beside));
                 }
                 let mut view = cross.view_mut((*first, 0), (basis.ncols(), whitened.width() + 1));
-                view += basis.transpose() * &whitened.chunks[index];
+                view.gemm(1.0, &transposed, &whitened.chunks[index], 1.0);
             }
         }
-        Some(Solved { factor: matrix.cholesky()?, cross, log_prior })
+        Gathered { groups: self.groups.clone(), matrix, cross }
+    }
+}
+
+impl Gathered {
+    /// With the priors of spreads that have the same knots; none where the sum is not positive definite.
+    pub fn solved(&self, spreads: &[&Spread]) -> Option<Solved> {
+        let mut matrix = self.matrix.clone();
+        let mut log_prior = 0.0;
+        for (spread, groups) in spreads.iter().zip(&self.groups) {
+            for (number, (group, first)) in groups.iter().enumerate() {
+                for (row, column, value) in precision_entries(number, group, spread) {
+                    matrix.add(first + row.max(column), first + row.min(column), value);
+                }
+                log_prior += log_precision(number, group, spread);
+            }
+        }
+        let members = spreads.iter().map(|spread| (*spread).clone()).zip(self.groups.clone()).collect();
+        Some(Solved { members, factor: matrix.cholesky()?, cross: self.cross.clone(), log_prior })
+    }
+}
+
+impl Solved {
+    /// Eliminates the functions from products that were made already.
+    pub fn take(&self, reduced: &mut Reduced) {
+        let mut half = self.cross.clone();
+        self.factor.half_solve(&mut half);
+        reduced.take(&(half.transpose() * &half), self.factor.log_determinant() - self.log_prior);
+    }
+
+    /// The functions themselves, once the other columns have the values `beta`.
+    pub fn functions(&self, beta: &DVector<f64>, widths: Widths) -> Vec<Function> {
+        let values = self.factor.solve(&right_side(&self.cross, beta));
+        let sd = match widths {
+            Widths::Wanted => self.factor.inverse_diagonals().0.map(f64::sqrt),
+            Widths::Left => DVector::from_element(values.len(), f64::NAN),
+        };
+        let of_member = |(spread, groups): &(Spread, Placed)| {
+            let own = |(group, first): &(Group, usize)| {
+                (values.rows(*first, group.count).into_owned(), sd.rows(*first, group.count).into_owned())
+            };
+            Function {
+                groups: groups.iter().map(|(group, _)| group.clone()).collect(),
+                values: groups.iter().map(own).collect(),
+                spread: spread.clone(),
+                squares: vec![Vec::new(); groups.len()],
+            }
+        };
+        self.members.iter().map(of_member).collect()
     }
 }
 
@@ -230,11 +238,13 @@ mod tests {
         let members: Vec<Spreaded> = profiles.iter().zip(&spreads).collect();
         let abreast = Abreast::of(&members).unwrap();
         let mut reduced = whitened.reduced(&chunks, &[true]);
-        abreast.take(&whitened, &chunks, &[true], &mut reduced).unwrap();
+        let known: Vec<&Spread> = spreads.iter().collect();
+        let solved = abreast.gathered(&whitened, &chunks, &[true]).solved(&known).unwrap();
+        solved.take(&mut reduced);
         let found = reduced.estimate(&[], &[]).unwrap().log_evidence;
         assert!((found + 0.5 * deviance).abs() < 1e-8, "{found} against {}", -0.5 * deviance);
         let nothing = DVector::zeros(0);
-        let functions = abreast.functions(&whitened, &chunks, &[true], &nothing, Widths::Wanted).unwrap();
+        let functions = solved.functions(&nothing, Widths::Wanted);
         for (function, prior) in functions.iter().zip(&priors) {
             let expected = prior * &inverse * &residual[0];
             assert!((&function.values[0].0 - expected).amax() < 1e-9);

@@ -165,8 +165,9 @@ impl State<'_> {
         let of_run = |out: &usize| -> Option<Told> {
             let mut mask = self.fit.to_vec();
             mask[*out] = false;
-            let beta = self.without_functions(&whitened, &profiles, &mask)?.estimate(&places, &sd)?.beta;
-            let made = self.functions_of(&whitened, &profiles, &mask, &beta, Widths::Left)?;
+            let solved = self.gathered(&whitened, &profiles, &mask)?.solved(&profiles)?;
+            let beta = solved.reduced.estimate(&places, &sd)?.beta;
+            let made = solved.functions(&beta, Widths::Left);
             let functions: Vec<Column> = profiles
                 .iter()
                 .zip(&made)

@@ -7,14 +7,12 @@
 //! Source: Rasmussen and Williams, *Gaussian Processes for Machine Learning* (2006), sections 2.7 and B.2.1.
 
 use crate::balance::System;
-use crate::band::{Band, Factor};
 use crate::catalogue::Form;
-use crate::gram::{Column, Reduced, Whitened, right_side};
-use crate::jumps::{Jumps, squares};
+use crate::gram::Column;
+use crate::jumps::Jumps;
 use crate::recorded::Recorded;
 use crate::rows::{Chunk, Row};
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 /// How a function is spread over knots.
 #[derive(Clone, Debug, PartialEq)]
@@ -168,116 +166,8 @@ impl<'a> Profile<'a> {
             .collect()
     }
 
-    /// Eliminates the function from a whitened problem.
-    pub fn eliminate(
-        &self,
-        whitened: &Whitened,
-        chunks: &[Chunk],
-        fit: &[bool],
-        spread: &Spread,
-    ) -> Option<Reduced> {
-        let mut reduced = whitened.reduced(chunks, fit);
-        self.take(whitened, chunks, fit, spread, &mut reduced)?;
-        Some(reduced)
-    }
-
-    /// Eliminates the function from products that were made already. Functions that are eliminated one after the other
-    /// must act on different rows; others are eliminated [`crate::abreast`].
-    pub fn take(
-        &self,
-        whitened: &Whitened,
-        chunks: &[Chunk],
-        fit: &[bool],
-        spread: &Spread,
-        reduced: &mut Reduced,
-    ) -> Option<()> {
-        let groups = self.groups(spread);
-        let of_group = |(number, group): (usize, &Group)| {
-            let Some(parts) = self.parts(whitened, chunks, fit, number, group, spread) else {
-                return Ok(None);
-            };
-            let Parts { matrix, mut cross } = parts;
-            let factor = matrix.cholesky().ok_or(())?;
-            factor.half_solve(&mut cross);
-            let log = factor.log_determinant() - log_precision(number, group, spread);
-            Ok(Some((cross.transpose() * &cross, log)))
-        };
-        let taken: Result<Vec<_>, ()> = groups.par_iter().enumerate().map(of_group).collect();
-        for (taken, log) in taken.ok()?.into_iter().flatten() {
-            reduced.take(&taken, log);
-        }
-        Some(())
-    }
-
-    /// The function itself, once the other columns have the values `beta`.
-    pub fn function(
-        &self,
-        whitened: &Whitened,
-        chunks: &[Chunk],
-        fit: &[bool],
-        spread: &Spread,
-        beta: &DVector<f64>,
-        widths: Widths,
-    ) -> Function {
-        let groups = self.groups(spread);
-        let of_group = |(number, group): (usize, &Group)| {
-            let parts = self.parts(whitened, chunks, fit, number, group, spread);
-            let solved = parts.and_then(|Parts { matrix, cross }| Some((matrix.cholesky()?, cross)));
-            let Some((factor, cross)): Option<(Factor, DMatrix<f64>)> = solved else {
-                let size = DVector::from_element(group.count, spread.size);
-                return ((DVector::zeros(group.count), size), vec![1.0; group.count - 1]);
-            };
-            let values = factor.solve(&right_side(&cross, beta));
-            if widths == Widths::Left && spread.jumps.is_none() {
-                let unknown = DVector::from_element(group.count, f64::NAN);
-                return ((values, unknown), Vec::new());
-            }
-            let usual = innovation(group, spread);
-            let (own, beside) = factor.inverse_diagonals();
-            let squares = squares(&own, &beside, &values, forgetting(group, spread));
-            let squares = squares.into_iter().map(|square| square / usual).collect();
-            ((values, own.map(f64::sqrt)), squares)
-        };
-        let (values, squares) = groups.par_iter().enumerate().map(of_group).unzip();
-        Function { values, groups, spread: spread.clone(), squares }
-    }
-
-    fn parts(
-        &self,
-        whitened: &Whitened,
-        chunks: &[Chunk],
-        fit: &[bool],
-        number: usize,
-        group: &Group,
-        spread: &Spread,
-    ) -> Option<Parts> {
-        let width = whitened.width();
-        let own: Vec<usize> = (0..chunks.len())
-            .filter(|index| fit[chunks[*index].run] && self.group_of[chunks[*index].run] == number)
-            // Balances that the cause does not touch say nothing of it.
-            .filter(|index| self.touches(*index))
-            .collect();
-        // Whitened rows know all knots of their chunk, so the widest chunk makes the band.
-        let reach =
-            own.iter().map(|index| self.touched(*index, group)).map(|(low, high)| high - low).max()?;
-        let mut matrix = precision(number, group, spread, reach);
-        let mut cross = DMatrix::zeros(group.count, width + 1);
-        for index in own {
-            let chunk = &chunks[index];
-            let (first, mut basis) = self.basis(index, chunk, group);
-            whitened.whiteners.whiten(index, chunk, &mut basis);
-            let own = basis.transpose() * &basis;
-            let with = basis.transpose() * &whitened.chunks[index];
-            let local = basis.ncols();
-            matrix.add_block(first, &own);
-            let mut view = cross.view_mut((first, 0), (local, width + 1));
-            view += with;
-        }
-        Some(Parts { matrix, cross })
-    }
-
     /// The first and the last knot that a chunk touches.
-    fn touched(&self, index: usize, group: &Group) -> (usize, usize) {
+    pub fn touched(&self, index: usize, group: &Group) -> (usize, usize) {
         let at = &self.at[index];
         (knot(group, at.min()).0, (knot(group, at.max()).0 + 1).min(group.count - 1))
     }
@@ -296,11 +186,6 @@ impl<'a> Profile<'a> {
         }
         (low, basis)
     }
-}
-
-struct Parts {
-    matrix: Band,
-    cross: DMatrix<f64>,
 }
 
 /// The path or run of a run, by number, whose function it takes.
@@ -370,12 +255,13 @@ impl Function {
     }
 }
 
-fn forgetting(group: &Group, spread: &Spread) -> f64 {
+/// What is left of a function's value at the next knot.
+pub fn forgetting(group: &Group, spread: &Spread) -> f64 {
     (-group.step / spread.length).exp()
 }
 
 /// Usual variance of an increment.
-fn innovation(group: &Group, spread: &Spread) -> f64 {
+pub fn innovation(group: &Group, spread: &Spread) -> f64 {
     let phi = forgetting(group, spread);
     spread.size * spread.size * (1.0 - phi * phi)
 }
@@ -417,15 +303,6 @@ pub fn precision_entries(number: usize, group: &Group, spread: &Spread) -> Vec<(
     all
 }
 
-/// The prior's precision, in a band that reaches at least so far.
-fn precision(number: usize, group: &Group, spread: &Spread, reach: usize) -> Band {
-    let mut band = Band::zeros(group.count, reach.max(1));
-    for (row, column, value) in precision_entries(number, group, spread) {
-        band.add(row, column, value);
-    }
-    band
-}
-
 /// ln |P| in closed form, and what a bound of the prior is below it, twice.
 pub fn log_precision(number: usize, group: &Group, spread: &Spread) -> f64 {
     let increments = group.count - 1;
@@ -437,12 +314,21 @@ pub fn log_precision(number: usize, group: &Group, spread: &Spread) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::band::Band;
+
+    fn precision(group: &Group, spread: &Spread) -> Band {
+        let mut band = Band::zeros(group.count, 1);
+        for (row, column, value) in precision_entries(0, group, spread) {
+            band.add(row, column, value);
+        }
+        band
+    }
 
     #[test]
     fn the_closed_form_of_the_determinant_is_that_of_the_matrix() {
         let group = Group { from: 0.0, step: 3.0, count: 7 };
         let spread = Spread { length: 10.0, size: 0.3, knots_per_length: COARSE, jumps: None, shared: false };
-        let direct = precision(0, &group, &spread, 1).cholesky().unwrap().log_determinant();
+        let direct = precision(&group, &spread).cholesky().unwrap().log_determinant();
         assert!((direct - log_precision(0, &group, &spread)).abs() < 1e-9);
     }
 
@@ -450,7 +336,7 @@ mod tests {
     fn the_precision_is_the_inverse_of_an_exponential_covariance() {
         let group = Group { from: 0.0, step: 3.0, count: 5 };
         let spread = Spread { length: 10.0, size: 0.3, knots_per_length: COARSE, jumps: None, shared: false };
-        let factor = precision(0, &group, &spread, 1).cholesky().unwrap();
+        let factor = precision(&group, &spread).cholesky().unwrap();
         let row = factor.solve(&DVector::from_fn(5, |knot, _| f64::from(knot == 3)));
         let expected = 0.09 * (-6.0_f64 / 10.0).exp();
         assert!((row[1] - expected).abs() < 1e-12 && (row[3] - 0.09).abs() < 1e-12);

@@ -66,7 +66,7 @@ impl<'s, 'a> Spreading<'s, 'a> {
         let reduced = if let Some(without) = &self.without {
             let mut reduced = without.clone();
             let profile = if spread.shared { self.shared.as_ref()? } else { &self.profile };
-            profile.take(&self.whitened, chunks, state.fit, spread, &mut reduced)?;
+            profile.gathered(&self.whitened, chunks, state.fit, spread).solved(spread)?.take(&mut reduced);
             reduced
         } else {
             let mut profiles = state.profiles(self.others);

@@ -1,10 +1,11 @@
 //! A set of causes and how likely it makes the recordings: estimates, their noise, the evidence.
 
 use crate::Case;
-use crate::abreast::{self, Abreast, Spreaded, clusters};
+use crate::abreast;
 use crate::balance::{Kind, System};
 use crate::catalogue::{Cause, Form};
 use crate::cycles::Cycles;
+use crate::functions::Profiles;
 use crate::gram::{Column, Estimate, Reduced, Whitened};
 use crate::look::MANY_ROWS;
 use crate::noise::Noises;
@@ -67,15 +68,6 @@ pub struct State<'a> {
     pub system: &'a System,
     pub pool: &'a Pool,
     pub fit: &'a [bool],
-}
-
-/// The functions of a cluster.
-fn members<'p, 'a>(
-    profiles: &'p [Option<(Profile<'a>, Spread)>],
-    cluster: &[usize],
-) -> Vec<Spreaded<'p, 'a>> {
-    let of = |place: &usize| profiles[*place].as_ref().map(|(profile, spread)| (profile, spread));
-    cluster.iter().filter_map(of).collect()
 }
 
 /// Effects are sometimes several times their usual size: so much wider is the prior that they are estimated with.
@@ -263,50 +255,6 @@ impl<'a> State<'a> {
         parts.iter().map(of).collect()
     }
 
-    /// Products over the runs that are `fit`, without the functions.
-    pub fn without_functions(
-        &self,
-        whitened: &Whitened,
-        profiles: &[Option<(Profile, Spread)>],
-        fit: &[bool],
-    ) -> Option<Reduced> {
-        let chunks = &self.system.chunks;
-        let mut reduced = whitened.reduced(chunks, fit);
-        for cluster in clusters(profiles) {
-            match members(profiles, &cluster)[..] {
-                [(profile, spread)] => profile.take(whitened, chunks, fit, spread, &mut reduced)?,
-                ref several => Abreast::of(several)?.take(whitened, chunks, fit, &mut reduced)?,
-            }
-        }
-        Some(reduced)
-    }
-
-    /// The functions of a set as some runs tell them, once all columns in use have the values `beta`; none where there are too
-    /// many to tell apart.
-    pub fn functions_of(
-        &self,
-        whitened: &Whitened,
-        profiles: &[Option<(Profile, Spread)>],
-        runs: &[bool],
-        beta: &DVector<f64>,
-        widths: Widths,
-    ) -> Option<Vec<Option<Function>>> {
-        let chunks = &self.system.chunks;
-        let mut all: Vec<Option<Function>> = vec![None; profiles.len()];
-        for cluster in clusters(profiles) {
-            let made = match members(profiles, &cluster)[..] {
-                [(profile, spread)] => {
-                    vec![profile.function(whitened, chunks, runs, spread, beta, widths)]
-                }
-                ref several => Abreast::of(several)?.functions(whitened, chunks, runs, beta, widths)?,
-            };
-            for (place, function) in cluster.into_iter().zip(made) {
-                all[place] = Some(function);
-            }
-        }
-        Some(all)
-    }
-
     /// Whether the first column of a trial shows in a balance.
     pub fn touches(&self, trial: &Trial, balance: usize) -> bool {
         let signature = &self.pool.columns[trial.columns[0]];
@@ -405,12 +353,16 @@ impl<'a> State<'a> {
         let jumps =
             parts.iter().any(|part| part.spread.as_ref().is_some_and(|spread| spread.jumps.is_some()));
         let least = if jumps { LEAST_ROUNDS } else { 0 };
+        let gathered = |noises: &Noises, profiles: &Profiles| {
+            let whitened = Whitened::new(chunks, &self.system.residual, &columns, noises)?;
+            self.gathered(&whitened, profiles, self.fit)
+        };
+        let mut told = gathered(&noises, &profiles)?;
         for round in 0..rounds + least {
-            let whitened = Whitened::new(chunks, &self.system.residual, &columns, &noises)?;
-            let reduced = self.without_functions(&whitened, &profiles, self.fit)?;
-            let estimate = reduced.estimate(&places, &sd)?;
+            let solved = told.solved(&profiles)?;
+            let estimate = solved.reduced.estimate(&places, &sd)?;
             let mut left = self.left(&used, &estimate.beta);
-            let made = self.functions_of(&whitened, &profiles, self.fit, &estimate.beta, Widths::Left)?;
+            let made = solved.functions(&estimate.beta, Widths::Left);
             for (one, made) in profiles.iter().zip(&made) {
                 let (Some((profile, _)), Some(made)) = (one, made) else { continue };
                 for (left, rows) in left.iter_mut().zip(profile.rows(self.system, made)) {
@@ -447,6 +399,7 @@ impl<'a> State<'a> {
             // Until then the noise stays what neighbouring rows show.
             if round >= least {
                 noises = next;
+                told = gathered(&noises, &profiles)?;
             }
         }
         best.map(|stand| Stand { functions: self.drawn(&stand, &stand.noises, self.fit), ..stand })
@@ -462,7 +415,8 @@ impl<'a> State<'a> {
         let chunks = &self.system.chunks;
         let whitened = Whitened::new(chunks, &self.system.residual, &columns, noises);
         let Some(whitened) = whitened else { return vec![None; profiles.len()] };
-        let told = self.functions_of(&whitened, &profiles, runs, &stand.estimate.beta, Widths::Wanted);
+        let solved = self.gathered(&whitened, &profiles, runs).and_then(|told| told.solved(&profiles));
+        let told = solved.map(|solved| solved.functions(&stand.estimate.beta, Widths::Wanted));
         told.unwrap_or_else(|| vec![None; profiles.len()])
     }
 

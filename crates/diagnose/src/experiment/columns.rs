@@ -237,12 +237,14 @@ impl<'a, 'b> Columns<'a, 'b> {
                 jumps: None,
                 shared: false,
             };
-            let Some(reduced) = profile.eliminate(&whitened, chunks, fit, &spread) else { continue };
+            let Some(solved) = profile.gathered(&whitened, chunks, fit, &spread).solved(&spread) else {
+                continue;
+            };
+            let mut reduced = whitened.reduced(chunks, fit);
+            solved.take(&mut reduced);
             let Some(estimate) = reduced.estimate(&all, &sd) else { continue };
             if best.as_ref().is_none_or(|(known, _)| estimate.log_evidence > *known) {
-                let function =
-                    profile.function(&whitened, chunks, fit, &spread, &estimate.beta, Widths::Wanted);
-                best = Some((estimate.log_evidence, function));
+                best = Some((estimate.log_evidence, solved.function(&estimate.beta, Widths::Wanted)));
             }
         }
         best.map(|(_, function)| function)

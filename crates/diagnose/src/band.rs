@@ -16,7 +16,7 @@ pub struct Band {
 }
 
 /// Rows and columns that are taken at once where a band is wide.
-const BLOCK: usize = 64;
+const BLOCK: usize = 16;
 
 /// The lower Cholesky factor of such a matrix, in the same order.
 pub struct Factor(Band);
@@ -67,7 +67,12 @@ impl Band {
 
     /// Its factor; none where it is not positive definite.
     pub fn cholesky(self) -> Option<Factor> {
-        if self.width > 2 * BLOCK { self.by_blocks() } else { self.by_entries() }
+        if self.is_wide() { self.by_blocks() } else { self.by_entries() }
+    }
+
+    /// Whether blocks are faster than entries.
+    fn is_wide(&self) -> bool {
+        self.width > 2 * BLOCK
     }
 
     fn by_entries(mut self) -> Option<Factor> {
@@ -187,41 +192,54 @@ impl Factor {
 
     /// The diagonal of the inverse, and what stands to the left of it; of the first row nothing does.
     pub fn inverse_diagonals(&self) -> (DVector<f64>, DVector<f64>) {
-        /// A band of more than such a share of the matrix has an inverse of its factor that is hardly larger.
-        const WIDE: usize = 4;
-        let wide = self.0.width > 2 * BLOCK && WIDE * self.0.width > self.0.size;
-        if wide { self.inverse_diagonals_by_blocks() } else { self.inverse_diagonals_by_entries() }
+        if self.0.is_wide() {
+            self.inverse_diagonals_by_blocks()
+        } else {
+            self.inverse_diagonals_by_entries()
+        }
     }
 
-    /// Sums over the columns of L⁻¹, of which A⁻¹ = L⁻ᵀ L⁻¹ is made.
-    fn inverse_diagonals_by_blocks(&self) -> (DVector<f64>, DVector<f64>) {
+    /// The rows of the factor from `row` and its columns from `column`.
+    fn part(&self, (row, rows): (usize, usize), (column, columns): (usize, usize)) -> DMatrix<f64> {
         let Self(factor) = self;
-        let mut inverse = DMatrix::zeros(factor.size, factor.size);
-        for begin in (0..factor.size).step_by(BLOCK) {
-            let count = BLOCK.min(factor.size - begin);
-            let first = factor.first(begin);
-            let rows = |from: usize, columns: usize| {
-                DMatrix::from_fn(count, columns, |row, column| {
-                    let (row, column) = (begin + row, from + column);
-                    let held = column <= row && column >= factor.first(row);
-                    if held { factor.entries[factor.place(row, column)] } else { 0.0 }
-                })
-            };
-            let mut lone = DMatrix::identity(count, count);
+        DMatrix::from_fn(rows, columns, |one, other| {
+            let (row, column) = (row + one, column + other);
+            let held = column <= row && column >= factor.first(row);
+            if held { factor.entries[factor.place(row, column)] } else { 0.0 }
+        })
+    }
+
+    /// In blocks from the last up: with G = L_below L_own⁻¹, Z beside is −Z_below G and Z of its own L_own⁻ᵀ L_own⁻¹ − Gᵀ Z beside.
+    /// Of the inverse only what a band reaches below a block is kept.
+    fn inverse_diagonals_by_blocks(&self) -> (DVector<f64>, DVector<f64>) {
+        let Band { size, width, .. } = self.0;
+        let (mut own, mut beside) = (DVector::zeros(size), DVector::zeros(size));
+        let mut below = DMatrix::zeros(0, 0);
+        for begin in (0..size).step_by(BLOCK).rev() {
+            let count = BLOCK.min(size - begin);
+            let end = begin + count;
+            let reach = width.min(size - end);
+            let mut inverse = DMatrix::identity(count, count);
             // A factor's diagonal is positive.
-            rows(begin, count).solve_lower_triangular_mut(&mut lone);
-            if begin > 0 {
-                let known = rows(first, begin - first) * inverse.view((first, 0), (begin - first, begin));
-                inverse.view_mut((begin, 0), (count, begin)).copy_from(&(-&lone * known));
+            self.part((begin, count), (begin, count)).solve_lower_triangular_mut(&mut inverse);
+            let g = self.part((end, reach), (begin, count)) * &inverse;
+            let mut all = DMatrix::zeros(count + reach, count + reach);
+            let mut part = all.view_mut((count, count), (reach, reach));
+            part.copy_from(&below.view((0, 0), (reach, reach)));
+            let left = -(&part * &g);
+            all.view_mut((0, 0), (count, count))
+                .copy_from(&(inverse.transpose() * &inverse - g.transpose() * &left));
+            all.view_mut((0, count), (count, reach)).copy_from(&left.transpose());
+            all.view_mut((count, 0), (reach, count)).copy_from(&left);
+            for row in 0..count {
+                own[begin + row] = all[(row, row)];
             }
-            inverse.view_mut((begin, begin), (count, count)).copy_from(&lone);
+            for row in 1..(count + 1).min(all.nrows()) {
+                beside[begin + row] = all[(row, row - 1)];
+            }
+            below = all;
         }
-        let product = |one: usize, other: usize| inverse.column(one).dot(&inverse.column(other));
-        let beside = |row: usize| if row == 0 { 0.0 } else { product(row, row - 1) };
-        (
-            DVector::from_fn(factor.size, |row, _| product(row, row)),
-            DVector::from_fn(factor.size, |row, _| beside(row)),
-        )
+        (own, beside)
     }
 
     fn inverse_diagonals_by_entries(&self) -> (DVector<f64>, DVector<f64>) {

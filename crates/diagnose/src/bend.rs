@@ -232,11 +232,15 @@ fn divided(
     Size { own: values, free }: &Size,
 ) -> Result<Vec<Column>, DiagnoseError> {
     let cause = &case.causes[trial.cause];
+    let beside = match free {
+        Some(free) => Some((free, case.said_so_far_with(case.study.scenario(), free)?)),
+        None => None,
+    };
     let with = |within: &dyn Fn(usize) -> bool| -> Result<Column, DiagnoseError> {
         let all = placed(cause, trial, values, within);
         let text = |run: &Recorded| for_run(&cause.written(&all), cause, run);
-        match free {
-            Some(free) => effect_beside(case, system, cause, &text, free),
+        match &beside {
+            Some((free, said)) => effect_beside(case, system, cause, &text, (free, said)),
             None => effect(case, system, cause, 1.0, &text),
         }
     };

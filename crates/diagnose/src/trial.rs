@@ -225,18 +225,17 @@ pub fn effect(
     Ok(case.column(system, &shown(case, system, cause, step, text)?))
 }
 
-/// The same per unit of a cause written in full, beside free parameters of these values.
+/// The same per unit of a cause written in full, beside free parameters of these values and what the model says with them alone.
 pub fn effect_beside(
     case: &Case,
     system: &System,
     cause: &Cause,
     text: &(impl Fn(&Recorded) -> String + Sync),
-    values: &[f64],
+    (values, before): (&[f64], &[Said]),
 ) -> Result<Column, DiagnoseError> {
-    let before = case.said_so_far_with(case.study.scenario(), values)?;
     let after = case.said_beside(text, values, &case.kinds)?;
     let of_kind = |kind: Kind| {
-        let mut samples = changes(case, kind, (&before, &after), 1.0);
+        let mut samples = changes(case, kind, (before, &after), 1.0);
         mute(cause, kind, system, &mut samples);
         (kind, samples)
     };

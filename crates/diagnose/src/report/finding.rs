@@ -154,7 +154,8 @@ pub struct Doubts {
 /// have to be near the noise. Nor is certain what leaves most of the error that the noise does not explain, a law least of all. A free parameter that ends so
 /// many standard deviations (`strain`) from what was known of it stands in for something as well. A fault that may as well be
 /// physics leaves open whether anything is missing, and so does a cause that may as well be none (`slight`). What makes the error grow in
-/// runs that it never saw is not certain either, whatever it is.
+/// runs that it never saw is not certain either, whatever it is; nor are courses of each run that explain next to nothing beside an
+/// error that noise does not.
 pub fn verdict(findings: &[FindingReport], fit: &Fit, doubts: &Doubts) -> Verdict {
     /// An error of so many times the noise is no matter of how well the noise is known.
     const FAR: f64 = 10.0;
@@ -175,6 +176,9 @@ pub fn verdict(findings: &[FindingReport], fit: &Fit, doubts: &Doubts) -> Verdic
     const MOST_LEFT_BY_A_LAW: f64 = 0.6;
     /// What each run tells of itself can follow a speed as near to the noise as that.
     const FOLLOWED: f64 = 3.0;
+    /// And it follows whatever there is: where so much more than the noise is left it has to be more than this share of all.
+    const BEYOND: f64 = 2.0;
+    const LITTLE: f64 = 0.1;
     let Doubts { timed, courses, slight, strain } = *doubts;
     let far = fit.lack_of_fit > FAR;
     let any = |kind: FindingKind| findings.iter().any(|finding| finding.kind == kind);
@@ -196,7 +200,8 @@ pub fn verdict(findings: &[FindingReport], fit: &Fit, doubts: &Doubts) -> Verdic
     let follows = fit.signal != "speed_m_s" || fit.fitted.rmse_after < FOLLOWED * fit.fitted.noise;
     let says_little = fit.held_out.as_ref().is_some_and(leaves) && !(timed && follows);
     let rough = far && (!timed || far_fitted) || says_little;
-    let doubtful = claims && (rough || fit.grows() && !courses || slight) || strained;
+    let trifling = courses && first.share_of_mismatch < LITTLE && fit.lack_of_fit > BEYOND;
+    let doubtful = claims && (rough || fit.grows() && !courses || slight || trifling) || strained;
     if first.kind == FindingKind::Unlisted && !first.is_doubtful() && !doubtful {
         Verdict::Unlisted
     } else if first.is_doubtful()
@@ -588,6 +593,18 @@ pub mod tests {
         };
         assert_eq!(slight("driveline_efficiency", FindingKind::Physics), Verdict::CannotTell);
         assert_eq!(slight("latency", FindingKind::Artefact), Verdict::SensorArtefact);
+    }
+
+    #[test]
+    fn a_course_that_explains_next_to_nothing_beside_what_is_left_is_no_certainty() {
+        let verdict = |share_of_mismatch: f64, lack_of_fit: f64| {
+            let found = finding(FindingKind::Physics, "auxiliary_power", None);
+            let doubts = Doubts { timed: true, courses: true, ..Doubts::default() };
+            super::verdict(&[FindingReport { share_of_mismatch, ..found }], &fit(lack_of_fit, 0.1), &doubts)
+        };
+        assert_eq!(verdict(0.04, 2.3), Verdict::CannotTell);
+        assert_eq!(verdict(0.04, 1.3), Verdict::MissingPhysics);
+        assert_eq!(verdict(0.4, 2.3), Verdict::MissingPhysics);
     }
 
     #[test]

@@ -113,15 +113,47 @@ impl State<'_> {
             let middle = median(&values);
             let square = values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64;
             let off = middle.abs() > SIGMAS * median(&sds) && middle.abs() > SHARE * square.sqrt();
-            if off {
-                one.rivals.push(Rival {
-                    cause,
-                    gain: one.gain,
-                    squared_correlation: middle * middle / square,
-                    free: self.free_beside(best),
-                });
+            if !off {
+                continue;
+            }
+            let other_names = self.names_of_level(best, cause, middle);
+            for cause in std::iter::once(cause).chain(other_names) {
+                if !one
+                    .rivals
+                    .iter()
+                    .any(|rival| self.case.causes[rival.cause].id == self.case.causes[cause].id)
+                {
+                    one.rivals.push(Rival {
+                        cause,
+                        gain: one.gain,
+                        squared_correlation: middle * middle / square,
+                        free: self.free_beside(best),
+                    });
+                }
             }
         }
+    }
+
+    /// Causes of one number that do to these rows what a level of the ground does, each of which can be what a level of this value
+    /// asks of it: brakes that drag, on one ground.
+    fn names_of_level(&self, best: &Stand, cause: usize, level: f64) -> Vec<usize> {
+        let single = |trial: &&Trial| {
+            let cause = self.cause(trial);
+            trial.columns.len() == 1
+                && cause.form == Form::Parameters
+                && cause.law.is_none()
+                && cause.run.is_none()
+        };
+        let singles = || self.pool.trials.iter().filter(single);
+        let ground = singles().find(|trial| trial.cause == cause);
+        let Some((ground, reduced)) = ground.zip(self.reduced(&best.noises, &[])) else { return Vec::new() };
+        let product = |one: &Trial, other: &Trial| reduced.matrix[(one.columns[0], other.columns[0])];
+        let same = |trial: &&Trial| {
+            let (own, both) = (product(trial, trial), product(trial, ground));
+            let alike = both * both > OTHER_WORDS * own * product(ground, ground);
+            trial.cause != cause && alike && !self.cause(trial).impossible(trial.terms[0], level * both / own)
+        };
+        singles().filter(same).map(|trial| trial.cause).collect()
     }
 
     /// Names a map of the ground beside a pull that sets in and ends, where it may as well be one patch of it: a map is dear, since

@@ -50,16 +50,19 @@ fn a_patch_that_doubles_the_resistance_is_no_brake() {
     assert!(!named(&found, "braking"), "{}", found.diagnosis.answer);
 }
 
-/// A lane that is softer everywhere and has a patch: level and map are one sum, and both are named. A patch alone is no level.
+/// A lane that is softer everywhere and has a patch: level and map are one sum, and both are named, as are brakes, which on one
+/// ground drag as a level does. A patch alone is no level.
 #[test]
 fn a_map_that_lies_off_nought_all_along_names_the_level_beside_it() {
     let patch = "soft_ground(positions_m: [40, 70], coefficients: [0.035])";
     let both = found(&format!("rolling_resistance(coefficient: 0.04), {patch}"));
-    for id in ["soft_ground", "rolling_resistance"] {
+    for id in ["soft_ground", "rolling_resistance", "brake_drag"] {
         assert!(named(&both, id), "{id}: {}", both.diagnosis.answer);
     }
     let alone = found(patch);
-    assert!(!named(&alone, "rolling_resistance"), "{}", alone.diagnosis.answer);
+    for id in ["rolling_resistance", "brake_drag"] {
+        assert!(!named(&alone, id), "{}", alone.diagnosis.answer);
+    }
 }
 
 /// Passes that leave little to resist: a level of its own in each run says as much, and teaches no run the next one. Beside what was

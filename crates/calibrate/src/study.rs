@@ -208,8 +208,16 @@ impl<'a> Study<'a> {
                 if scenario.document().resolve(&known.name).is_ok_and(|path| path == free.path) {
                     parameter.value = known.value.clamp(free.bounds.0, free.bounds.1);
                     parameter.sd = known.sd.or(parameter.sd);
+                    let beyond = if parameter.value == known.value {
+                        String::new()
+                    } else {
+                        format!(
+                            ", and so beyond its bounds, of which the nearer one is taken: {}",
+                            parameter.value
+                        )
+                    };
                     notes.push(format!(
-                        "the prior of `{}` is what the recording knows of it: {}",
+                        "the prior of `{}` is what the recording knows of it: {}{beyond}",
                         free.name, known.value
                     ));
                 }

@@ -26,7 +26,7 @@ impl Plugin for DrivelineEfficiency {
         about: "a loss in proportion to the force that is transmitted",
         equation: "F_lost = ε |F|",
         source: "efficiency of gears; Niemann and Winter, Maschinenelemente II (2003), section 21",
-        validity: "losses of load; those without load are drags",
+        validity: "losses of load, against the motion whether the drive pulls or brakes; those without load are drags; F is the force without this loss",
         parameters: &[
             parameter("loss", "1", "share of the force at the wheels, beside the losses stated, ε")
                 .must_be(Bound::Within(-0.4, 0.4))

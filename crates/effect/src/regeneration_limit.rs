@@ -27,7 +27,7 @@ impl Plugin for RegenerationLimit {
     const CARD: Card = Card {
         name: "regeneration_limit",
         about: "a drive that gives back less, when braking, than stated",
-        equation: "−F v ≤ P_r r, r = 0 up to v₀, 1 from v₁ on",
+        equation: "−F v ≤ P_r r, r = 0 up to v₀, 1 from v₁ on, straight between",
         source: "Guzzella and Sciarretta, Vehicle Propulsion Systems (2013), section 4.3",
         validity: "limits what a driver asks for, not a recorded force; leaves out state of charge",
         parameters: &[

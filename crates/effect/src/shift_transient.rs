@@ -28,7 +28,7 @@ impl Plugin for ShiftTransient {
     const CARD: Card = Card {
         name: "shift_transient",
         about: "drive force that is lost where the transmission changes its range",
-        equation: "F = F₀ Σ exp(−½ ((|v| − vᵢ)/w)²) while driving",
+        equation: "F = F₀ Σ exp(−½ ((|v| − vᵢ)/w)²) unless it coasts in neutral",
         source: "empirical bell; Renius, Fundamentals of Tractor Design (2020), chapter 5",
         validity: "changes at the same speeds up and down; leaves out the shock of the shaft",
         parameters: &[

@@ -250,6 +250,7 @@ fn beside(
             && state.works_widely(stand)
             && state.sensible(stand)
             && !state.draws_twice(stand)
+            && !state.are_levels(stand, sought.kind)
             && state.keeps_to_priors(stand, &found.stand)
     };
     for parts in candidates {
@@ -330,9 +331,9 @@ fn first_sound(laws: Vec<Law>, sought: &Sought) -> Option<Law> {
     laws.into_iter().next().filter(|law| is_sound(law, sought))
 }
 
-/// Whether a law draws no map, each of its terms is known and varies, and what is lost on a way is that.
+/// Whether a law draws no map, each of its terms is known, none of several is a level, and what is lost on a way is that.
 fn is_sound(law: &Law, sought: &Sought) -> bool {
-    let level = if law.each.is_empty() { is_level(law) } else { law.each.iter().any(is_level) };
+    let level = law.each.len() > 1 && law.each.iter().any(is_level);
     let known = !is_undetermined(law) && !is_hurried(law) && !level;
     !is_map(law, sought.target, sought.placed) && known && is_lost(law, sought)
 }
@@ -371,11 +372,16 @@ fn is_hurried(law: &Law) -> bool {
 
 /// Whether a term is the same nearly always, but for a vehicle that stands now and then: a level has names enough in the library.
 fn is_level(term: &Law) -> bool {
+    are_alike(term.prediction.iter().flatten())
+}
+
+/// Whether values are of one size nearly always.
+fn are_alike<'a>(values: impl Iterator<Item = &'a f64>) -> bool {
     /// So far from the median, as a share of it, is the same.
     const ABOUT: f64 = 0.2;
     /// In this share of the samples. What is switched is off for longer.
     const MOST: f64 = 0.85;
-    let sizes: Vec<f64> = term.prediction.iter().flatten().map(|value| value.abs()).collect();
+    let sizes: Vec<f64> = values.map(|value| value.abs()).collect();
     if sizes.is_empty() {
         return true;
     }
@@ -563,6 +569,32 @@ impl State<'_> {
             law.is_some_and(|law| law.depends_on == ["position_m"])
         };
         mapped && stand.parts.iter().any(drawn)
+    }
+
+    /// Whether a law of a set is the same nearly always in a balance, and a listed cause of one number in its place says as much but for
+    /// a little: what saturates early is a level, unless how it gets there is told.
+    fn are_levels(&self, stand: &Stand, kind: Kind) -> bool {
+        /// Growth of ln p that a level does not bring: the shape of the little that is left has to be plain.
+        const PLAINLY: f64 = 20.0;
+        let laws = stand.parts.iter().filter(|part| self.cause(&part.trial).law.is_some());
+        laws.into_iter().any(|law| {
+            let rows = self.system.chunks.iter().zip(&self.pool.columns[law.trial.columns[0]]);
+            let own = rows.filter(|(chunk, _)| self.fit[chunk.run] && self.system.kind(chunk) == kind);
+            if !are_alike(own.flat_map(|(_, rows)| rows.iter())) {
+                return false;
+            }
+            let others =
+                || stand.parts.iter().filter(|part| part.trial.columns != law.trial.columns).cloned();
+            let single = |trial: &&Trial| trial.columns.len() == 1 && !self.cause(trial).is_function();
+            let listed =
+                self.pool.trials.iter().filter(single).filter(|trial| self.cause(trial).law.is_none());
+            let instead = |trial: &Trial| {
+                let part = Part { trial: trial.clone(), spread: None };
+                self.likely(&others().chain([part]).collect::<Vec<_>>(), &stand.noises)
+            };
+            let own = self.likely(&stand.parts, &stand.noises);
+            own.is_none_or(|own| listed.filter_map(instead).any(|other| own - other < PLAINLY))
+        })
     }
 
     /// Whether a law of a set says the same as a listed cause in other words, which can be what it would have to be then.

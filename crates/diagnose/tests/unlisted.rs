@@ -126,6 +126,13 @@ fn a_drag_that_dies_away_with_speed_is_found_as_an_equation_that_runs() {
     is_found_as_a_law(FADING, &recorded(0.069, FADING));
 }
 
+/// A drag that is all there at a walk is a level at nearly every sample, and how it gets there says that it is none.
+#[test]
+fn a_drag_that_saturates_early_is_found_as_an_equation_that_runs() {
+    const SATURATING: &str = r#"expression(resistance: "a_n * (1 - exp(-v / v0_m_s))", constants: {"a_n": 5000.0, "v0_m_s": 1.0})"#;
+    is_found_as_a_law(SATURATING, &recorded(0.069, SATURATING));
+}
+
 /// Driven up and down over several speeds, with some effects.
 fn up_and_down(effects: &str) -> String {
     let reach =

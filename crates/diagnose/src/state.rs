@@ -357,9 +357,13 @@ impl<'a> State<'a> {
             let whitened = Whitened::new(chunks, &self.system.residual, &columns, noises)?;
             self.gathered(&whitened, profiles, self.fit)
         };
-        let mut told = gathered(&noises, &profiles)?;
+        let mut told = None;
         for round in 0..rounds + least {
-            let solved = told.solved(&profiles)?;
+            let own = match told.take() {
+                Some(own) => own,
+                None => gathered(&noises, &profiles)?,
+            };
+            let solved = own.solved(&profiles)?;
             let estimate = solved.reduced.estimate(&places, &sd)?;
             let mut left = self.left(&used, &estimate.beta);
             let made = solved.functions(&estimate.beta, Widths::Left);
@@ -399,7 +403,8 @@ impl<'a> State<'a> {
             // Until then the noise stays what neighbouring rows show.
             if round >= least {
                 noises = next;
-                told = gathered(&noises, &profiles)?;
+            } else {
+                told = Some(own);
             }
         }
         best.map(|stand| Stand { functions: self.drawn(&stand, &stand.noises, self.fit), ..stand })

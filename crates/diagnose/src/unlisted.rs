@@ -27,8 +27,12 @@ const SIMPLER: f64 = 0.03;
 const PLAINER: f64 = 4.5;
 /// A law that brings this share of that is as good as they are.
 const DOUBT: f64 = 0.5;
-/// A law works in at least this share of the rows, by the participation ratio of its squares.
+/// A law works in at least this share of the rows, by the participation ratio of its squares,
 const EVERYWHERE: f64 = 0.04;
+/// or in this one where it brings so much more than the listed causes: bends and starts are short.
+const NOW_AND_THEN: f64 = 0.01;
+/// Growth of ln p that the best of all formulas has by no chance.
+const BEYOND_CHANCE: f64 = 100.0;
 /// And in so many runs, by that of the runs' sums.
 const SHARED: f64 = 1.2;
 /// A consumer that may take any course is not told by a formula beyond so many rows, nor is one looked for in the place of each cause.
@@ -247,7 +251,7 @@ fn beside(
     };
     let is_sound_set = |stand: &Stand| {
         !state.impossible(&stand.parts, &stand.estimate)
-            && state.works_widely(stand)
+            && state.works_widely(stand, &found.stand)
             && state.sensible(stand)
             && !state.draws_twice(stand)
             && !state.are_levels(stand, sought.kind)
@@ -315,10 +319,15 @@ fn beside(
     }
     let state = State { case, system, pool, fit: &case.fit };
     let mut found = found;
-    // A law that the runs do not teach each other leaves what was found as it was.
-    let concluded = best.and_then(|best| concluded(&state, best, &found));
+    // A law that the runs do not teach each other leaves what was found as it was,
+    let concluded = best.clone().and_then(|best| concluded(&state, best, &found));
     if let Some(concluded) = concluded.filter(|concluded| worth(&concluded.stand) > worth(&found.stand)) {
         return Ok(concluded);
+    }
+    // but for courses of each run, which teach nothing either, where it says far more than they do.
+    let courses = !found.stand.parts.is_empty() && found.stand.parts.iter().all(|part| state.timed(part));
+    if let Some(best) = best.filter(|best| courses && worth(best) - worth(&found.stand) > BEYOND_CHANCE) {
+        return Ok(state.found(best, found.first.clone(), (found.tried.clone(), Vec::new()), found.needed));
     }
     if let Some(other) = as_good {
         state.sets_as_good(&mut found, &[other]);
@@ -537,7 +546,9 @@ impl State<'_> {
     }
 
     /// Whether the laws of a set are at work in more than a few rows, and in more than one run where there are several.
-    fn works_widely(&self, stand: &Stand) -> bool {
+    fn works_widely(&self, stand: &Stand, listed: &Stand) -> bool {
+        let beyond = worth(stand) - worth(listed) > BEYOND_CHANCE;
+        let least = if beyond { NOW_AND_THEN } else { EVERYWHERE };
         let laws = stand.parts.iter().filter(|part| self.cause(&part.trial).law.is_some());
         laws.into_iter().all(|part| {
             let effect = stand.effect(self, part);
@@ -554,7 +565,7 @@ impl State<'_> {
             }
             let several = self.fit.iter().filter(|fit| **fit).count() > 2;
             let shared = squares * squares > SHARED * of_runs.iter().map(|own| own * own).sum::<f64>();
-            squares * squares > EVERYWHERE * count as f64 * fourths && (shared || !several)
+            squares * squares > least * count as f64 * fourths && (shared || !several)
         })
     }
 

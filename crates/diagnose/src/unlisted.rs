@@ -319,15 +319,20 @@ fn beside(
     }
     let state = State { case, system, pool, fit: &case.fit };
     let mut found = found;
-    // A law that the runs do not teach each other leaves what was found as it was,
+    // A law that the runs do not teach each other leaves what was found as it was, but for courses of time, which they teach no
+    // better, where it says far more than those do.
     let concluded = best.clone().and_then(|best| concluded(&state, best, &found));
-    if let Some(concluded) = concluded.filter(|concluded| worth(&concluded.stand) > worth(&found.stand)) {
-        return Ok(concluded);
-    }
-    // but for courses of each run, which teach nothing either, where it says far more than they do.
-    let courses = !found.stand.parts.is_empty() && found.stand.parts.iter().all(|part| state.timed(part));
-    if let Some(best) = best.filter(|best| courses && worth(best) - worth(&found.stand) > BEYOND_CHANCE) {
+    let concluded = concluded.filter(|concluded| worth(&concluded.stand) > worth(&found.stand));
+    let is_law = |part: &Part| state.cause(&part.trial).law.is_some();
+    let taught = concluded.as_ref().is_some_and(|concluded| concluded.stand.parts.iter().any(is_law));
+    let course = |part: &Part| state.timed(part) || state.cause(&part.trial).is_course();
+    let courses = !found.stand.parts.is_empty() && found.stand.parts.iter().all(course);
+    let beyond = |best: &Stand| worth(best) - worth(&found.stand) > BEYOND_CHANCE;
+    if let Some(best) = best.filter(|best| !taught && courses && beyond(best)) {
         return Ok(state.found(best, found.first.clone(), (found.tried.clone(), Vec::new()), found.needed));
+    }
+    if let Some(concluded) = concluded {
+        return Ok(concluded);
     }
     if let Some(other) = as_good {
         state.sets_as_good(&mut found, &[other]);

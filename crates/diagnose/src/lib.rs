@@ -195,10 +195,12 @@ fn diagnose_once(
     let events = spells::spells(&mut case, &mut look, &sound, &braked)?;
     let (system, mut pool, found) = look.closer(&mut case)?;
     let listed = found.clone();
-    let found = unlisted::unlisted(&mut case, &system, &mut pool, found)?;
+    let (found, law) = unlisted::unlisted(&mut case, &system, &mut pool, found)?;
+    let told = found.clone();
     let events = brakes::standing(&case, &refine::plain(&case, &pool, &found), &events)?;
     let proven = withdraw::proven(&case, &system, &mut pool, found, &events, &faults)?;
     let proven = withdraw::or_listed(&case, &system, &mut pool, (proven, listed), &events, &faults)?;
+    let proven = withdraw::or_law(&case, &system, &mut pool, proven, (&told, law), &events, &faults)?;
     let proven = foreseen::foreseen(&case, &system, &mut pool, proven, &events, &faults)?;
     let proven::Proven { found, mut refined, withheld, proof } = proven;
     let next = experiment::propose(&case, &system, &pool, &found, &refined)?;

@@ -39,10 +39,15 @@ const SHARED: f64 = 1.2;
 const LONG_ROWS: usize = 8_000;
 /// Where what lasts of the noise is less than this share of that of the sensors, nothing is left that another law could say better.
 const WANDERS: f64 = 0.1;
+/// What acts on the motion.
+const FORCES: [(Kind, Target); 2] = [(Kind::Motion, Target::Force), (Kind::Motion, Target::Share)];
 /// Causes that a law of so many terms less takes the place of.
 const PATCHES: usize = 2;
 /// Causes that hide each other bring beside one another up to so many times what the best of them brings alone.
 const HARDLY: f64 = 3.0;
+
+/// What was found, laws among it, and the set with a law that would have been as good, where the listed causes stayed.
+pub type Told = (Found, Option<Stand>);
 
 /// Looks for a law, and puts it in the place of what was found or beside it.
 pub fn unlisted(
@@ -50,7 +55,7 @@ pub fn unlisted(
     system: &System,
     pool: &mut Pool,
     found: Found,
-) -> Result<Found, DiagnoseError> {
+) -> Result<Told, DiagnoseError> {
     /// Where power is drawn, and lost upstream of a measured force; what pulls where no force was measured.
     const POWERS: [(Kind, Target); 5] = [
         (Kind::Shaft, Target::Force),
@@ -59,8 +64,10 @@ pub fn unlisted(
         (Kind::Battery, Target::Power),
         (Kind::Fuel, Target::Power),
     ];
-    let found = of_motion(case, system, pool, found)?;
-    among(case, system, pool, found, &POWERS)
+    let (found, of_forces) = among(case, system, pool, found, &FORCES)?;
+    let (found, of_powers) = among(case, system, pool, found, &POWERS)?;
+    let as_good = of_forces.into_iter().chain(of_powers);
+    Ok((found, as_good.max_by(|one, other| worth(one).total_cmp(&worth(other)))))
 }
 
 /// The same for what acts on the motion alone.
@@ -70,8 +77,7 @@ pub fn of_motion(
     pool: &mut Pool,
     found: Found,
 ) -> Result<Found, DiagnoseError> {
-    const FORCES: [(Kind, Target); 2] = [(Kind::Motion, Target::Force), (Kind::Motion, Target::Share)];
-    among(case, system, pool, found, &FORCES)
+    Ok(among(case, system, pool, found, &FORCES)?.0)
 }
 
 fn among(
@@ -80,9 +86,10 @@ fn among(
     pool: &mut Pool,
     found: Found,
     sought: &[(Kind, Target)],
-) -> Result<Found, DiagnoseError> {
+) -> Result<Told, DiagnoseError> {
+    let mut as_good: Option<Stand> = None;
     if !case.wanted("unlisted") {
-        return Ok(found);
+        return Ok((found, as_good));
     }
     let forced = case.runs.iter().any(|run| run.measured.trace.get("tractive_force_n").is_some());
     let mut found = found;
@@ -110,10 +117,12 @@ fn among(
             && let Some(sought) = Sought::new(case, system, kind, target)?
         {
             case.step("unlisted causes")?;
-            found = beside(case, system, pool, found, &sought)?;
+            let other;
+            (found, other) = beside(case, system, pool, found, &sought)?;
+            as_good = other.or(as_good);
         }
     }
-    Ok(found)
+    Ok((found, as_good))
 }
 
 /// Sets with a law: by itself, beside what was found, and in place of parts of it.
@@ -225,7 +234,7 @@ fn beside(
     pool: &mut Pool,
     found: Found,
     sought: &Sought,
-) -> Result<Found, DiagnoseError> {
+) -> Result<Told, DiagnoseError> {
     let rows = system.row_count_of(sought.kind);
     let candidates = candidates(case, system, pool, &found, sought)?;
     let state = State { case, system, pool, fit: &case.fit };
@@ -297,7 +306,7 @@ fn beside(
     lasting.retain(|stand| is_sound_set(stand));
     let foretells = state.that_foretells(&found, lasting, sought.kind);
     if let Some(concluded) = foretells.and_then(|stand| concluded(&state, stand, &found)) {
-        return Ok(concluded);
+        return Ok((concluded, None));
     }
     // A law that was found by itself has what stood in for the listed causes beside it: it is looked for once more beside them.
     if let Some(stand) = best.clone() {
@@ -329,15 +338,16 @@ fn beside(
     let courses = !found.stand.parts.is_empty() && found.stand.parts.iter().all(course);
     let beyond = |best: &Stand| worth(best) - worth(&found.stand) > BEYOND_CHANCE;
     if let Some(best) = best.filter(|best| !taught && courses && beyond(best)) {
-        return Ok(state.found(best, found.first.clone(), (found.tried.clone(), Vec::new()), found.needed));
+        let found = state.found(best, found.first.clone(), (found.tried.clone(), Vec::new()), found.needed);
+        return Ok((found, None));
     }
     if let Some(concluded) = concluded {
-        return Ok(concluded);
+        return Ok((concluded, None));
     }
-    if let Some(other) = as_good {
-        state.sets_as_good(&mut found, &[other]);
+    if let Some(other) = &as_good {
+        state.sets_as_good(&mut found, std::slice::from_ref(other));
     }
-    Ok(found)
+    Ok((found, as_good))
 }
 
 /// The first of some laws, where it is sound.

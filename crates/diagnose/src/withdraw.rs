@@ -10,7 +10,7 @@ use crate::prove::{Errors, Measure, prove};
 use crate::proven::{Proven, RISES, held_out, is_worse};
 use crate::refine::Cured;
 use crate::search::{Found, Rival, worth};
-use crate::state::{Part, State};
+use crate::state::{Part, Stand, State};
 use crate::trial::Pool;
 use crate::words::each_once;
 use crate::{Case, DiagnoseError, System};
@@ -134,6 +134,36 @@ pub fn or_listed(
     let worse = errors(&other)?.zip(errors(&proven)?).is_some_and(|(own, others)| is_worse(&own, &others));
     let poorer = !proven.refined.causes.is_empty() && worth(&other.found.stand) < worth(&proven.found.stand);
     Ok(if worse || poorer { proven } else { other })
+}
+
+/// What was proven; where runs held out denied some of the listed causes that were `found`, and a law that nobody listed says as much as
+/// they did, what is proven of that, if it foretells those runs better.
+pub fn or_law(
+    case: &Case,
+    system: &System,
+    pool: &mut Pool,
+    proven: Proven,
+    (found, law): (&Found, Option<Stand>),
+    events: &[Event],
+    faults: &[Fault],
+) -> Result<Proven, DiagnoseError> {
+    /// The error has to be less than this share of what it is without.
+    const BETTER: f64 = 0.85;
+    let stayed = |part: &Part| proven.found.stand.parts.iter().any(|own| own.trial.cause == part.trial.cause);
+    let denied = !found.stand.parts.iter().all(stayed);
+    let Some(law) = law.filter(|_| denied) else { return Ok(proven) };
+    let state = State { case, system, pool, fit: &case.fit };
+    let told = state.found(law, found.first.clone(), (found.tried.clone(), Vec::new()), found.needed);
+    let other = self::proven(case, system, pool, told, events, faults)?;
+    let is_law = |cured: &Cured| cured.cause.law.is_some();
+    if !other.refined.causes.iter().any(is_law) || other.withheld.is_some() {
+        return Ok(proven);
+    }
+    // One signal tells of both.
+    let before = prove(case, system, &proven.refined, &other.proof.measure)?.held_out;
+    let better =
+        other.proof.held_out.zip(before).is_some_and(|(own, before)| own.after < BETTER * before.after);
+    Ok(if better { other } else { proven })
 }
 
 /// What was found without one law that nobody listed, without one map of a path, or without one listed cause that is hardly

@@ -67,9 +67,11 @@ pub fn proven(
             && let Some(found) = without(case, system, pool, &best.found, place)
         {
             let lesser = Proven::of(case, system, pool, found, events, Some(by))?;
-            withdrawn |= best.proof.fitted.after < MISSED * lesser.proof.fitted.after;
-            best = lesser;
-            continue;
+            if !is_borne_out(&best, &lesser) {
+                withdrawn |= best.proof.fitted.after < MISSED * lesser.proof.fitted.after;
+                best = lesser;
+                continue;
+            }
         }
         if is_faint(&best, place)
             && is_tiny(&best, place)
@@ -225,6 +227,14 @@ fn is_idle(with: &Errors, without: &Errors, (needed, faint): (f64, bool)) -> boo
     // Where the nominal scenario is further off, it is calibration that stands against a faint cause, and not nothing.
     let near = !faint || with.after > (1.0 - BORNE_OUT) * with.before;
     with.after > (1.0 - needed) * least && near
+}
+
+/// Whether runs held out are foretold by far better with a cause than without it, which nothing does by chance.
+fn is_borne_out(with: &Proven, without: &Proven) -> bool {
+    /// Share of the error that may be left.
+    const FAR_BETTER: f64 = 0.25;
+    let errors = with.proof.held_out.zip(without.proof.held_out);
+    errors.is_some_and(|(with, without)| with.after < FAR_BETTER * without.after.min(without.before))
 }
 
 /// Whether a formula has less evidence than the best of all that were tried needs.

@@ -16,12 +16,15 @@ use crate::refine::HALF_95;
 use crate::report::Interval;
 use crate::said::Said;
 use crate::sensors::{interpolate, with_channel};
+use crate::voltage::fast;
 use crate::{Case, DiagnoseError};
 use headland_recording::renewed_s;
 
 /// The faults that it can be.
 const LATENCY: &str = "latency";
 const DRIFT: &str = "clock_drift";
+/// The power of a battery, and the two that it is made of.
+const BATTERY: [&str; 3] = ["battery_power_w", "battery_current_a", "battery_voltage_v"];
 /// Signals are brought to one period [s], and delays are tried in steps of it.
 const STEP_S: f64 = 0.05;
 /// The longest delay that is tried [s].
@@ -55,7 +58,7 @@ enum By {
 /// How late a power is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Late {
-    /// Its channels.
+    /// Its channels that are.
     channels: &'static [&'static str],
     /// By how much.
     by: By,
@@ -81,10 +84,8 @@ struct Pair {
 
 /// The powers that are late.
 pub fn late(case: &Case) -> Vec<Late> {
-    let powers: [(Kind, &'static [&'static str]); 2] = [
-        (Kind::Fuel, &["fuel_rate_kg_s"]),
-        (Kind::Battery, &["battery_power_w", "battery_current_a", "battery_voltage_v"]),
-    ];
+    let powers: [(Kind, &'static [&'static str]); 2] =
+        [(Kind::Fuel, &["fuel_rate_kg_s"]), (Kind::Battery, &BATTERY)];
     let of = |(kind, channels): (Kind, &'static [&'static str])| {
         let runs = case.runs.iter().zip(&case.nominal);
         let pairs: Vec<Pair> = runs.filter_map(|(run, said)| pair(run, said, kind, channels[0])).collect();
@@ -98,9 +99,50 @@ pub fn late(case: &Case) -> Vec<Late> {
             By::Drift(rate) => (DRIFT, rate.abs() * case.longest_s()),
         };
         let matters = case.wanted(id) && late_s > LEAST_S.max(2.0 * renewal_s);
+        let alone = kind == Kind::Battery && is_current_alone(&batteries(&case.runs), by);
+        let channels = if alone { &BATTERY[..2] } else { channels };
         matters.then_some(Late { channels, by, sd })
     };
     powers.into_iter().filter_map(of).collect()
+}
+
+/// Time, current and voltage of every run that has them.
+fn batteries(runs: &[Recorded]) -> Vec<[&[f64]; 3]> {
+    let of = |run: &'_ Recorded| {
+        let trace = &run.measured.trace;
+        Some([trace.time_s(), trace.get(BATTERY[1])?, trace.get(BATTERY[2])?])
+    };
+    runs.iter().filter_map(of).collect()
+}
+
+/// Whether the current is late and the voltage is not, which falls as the current rises: it follows the current as it is set right
+/// better than the one that was recorded.
+fn is_current_alone(batteries: &[[&[f64]; 3]], by: By) -> bool {
+    /// Share of what the recorded current leaves of the voltage.
+    const BETTER: f64 = 0.9;
+    let left = |current_of: &dyn Fn(&[f64], &[f64]) -> Vec<f64>| -> f64 {
+        let (mut voltages, mut currents, mut products) = (0.0, 0.0, 0.0);
+        for [time_s, current_a, voltage_v] in batteries {
+            let (current, voltage) = (fast(time_s, &current_of(time_s, current_a)), fast(time_s, voltage_v));
+            for (current, voltage) in current.iter().zip(voltage) {
+                if current.is_finite() && voltage.is_finite() {
+                    voltages += voltage * voltage;
+                    currents += current * current;
+                    products += current * voltage;
+                }
+            }
+        }
+        let followed = if currents > 0.0 { products.min(0.0).powi(2) / currents } else { 0.0 };
+        voltages - followed
+    };
+    let as_it_is = left(&|_, current_a| current_a.to_vec());
+    let set_right = left(&|time_s, current_a| sooner(time_s, current_a, by));
+    set_right < BETTER * as_it_is
+}
+
+/// Samples as they would have been recorded in time; of what a late sensor would have said after the end the last is told.
+fn sooner(time_s: &[f64], samples: &[f64], by: By) -> Vec<f64> {
+    time_s.iter().map(|time| interpolate(time_s, samples, by.recorded_s(*time, time_s[0]))).collect()
 }
 
 /// Sets a late power right in all runs.
@@ -110,8 +152,17 @@ pub fn set_right(case: &mut Case, late: Late, usable: &mut [Vec<bool>]) -> Resul
         let recorded_s: Vec<f64> = time_s.iter().map(|time| late.by.recorded_s(*time, time_s[0])).collect();
         for name in late.channels {
             let Some(samples) = run.measured.trace.get(name) else { continue };
-            let sooner = recorded_s.iter().map(|time| interpolate(&time_s, samples, *time)).collect();
+            let sooner = sooner(&time_s, samples, late.by);
             run.measured.trace = with_channel(&run.measured.trace, name, sooner)?;
+        }
+        // What is made of a current that was late and a voltage that was not is made anew.
+        let trace = &run.measured.trace;
+        if late.channels == &BATTERY[..2]
+            && let Some((current_a, voltage_v)) = trace.get(BATTERY[1]).zip(trace.get(BATTERY[2]))
+        {
+            let power_w =
+                current_a.iter().zip(voltage_v).map(|(current, voltage)| current * voltage).collect();
+            run.measured.trace = with_channel(trace, BATTERY[0], power_w)?;
         }
         // What a late sensor would have said after the end nobody knows.
         for (usable, time) in usable.iter_mut().zip(&recorded_s) {
@@ -121,7 +172,7 @@ pub fn set_right(case: &mut Case, late: Late, usable: &mut [Vec<bool>]) -> Resul
     case.runs.clone_from(&case.raw);
     let (id, size, unit) = match late.by {
         By::Delay(delay_s) => {
-            let own = |name: &&&str| **name != "battery_power_w";
+            let own = |name: &&&str| **name != BATTERY[0];
             case.late_powers.extend(late.channels.iter().filter(own).map(|name| (*name, delay_s)));
             (LATENCY, delay_s, "s")
         }
@@ -371,6 +422,20 @@ mod tests {
         assert!((between(&values, 1) - 0.3).abs() < 1e-12);
         assert_eq!(between(&values, 0), 0.0);
         assert_eq!(told(&pairs(0, 2.0, 3.0), true), None);
+    }
+
+    /// A pack of 0.08 Ω: where a bus is late both are, and where a sensor is the current alone.
+    #[test]
+    fn a_voltage_that_is_in_time_stays_as_it_is() {
+        let time_s: Vec<f64> = (0..3000).map(|index| 0.1 * f64::from(index)).collect();
+        let current = |time_s: f64| 60.0 * (0.5 * time_s).sin() + 25.0 * (1.3 * time_s).cos();
+        let late = |by_s: f64| time_s.iter().map(|time| current(time - by_s)).collect::<Vec<f64>>();
+        let voltage = |by_s: f64| late(by_s).iter().map(|current| 312.0 - 0.08 * current).collect::<Vec<f64>>();
+        let alone = |by_s: f64| is_current_alone(&[[&time_s, &late(0.8), &voltage(by_s)]], By::Delay(0.8));
+        assert!(alone(0.0) && !alone(0.8));
+        // A voltage that tells nothing of the current does not tell which of them is late.
+        let level = vec![312.0; time_s.len()];
+        assert!(!is_current_alone(&[[&time_s, &late(0.8), &level]], By::Delay(0.8)));
     }
 
     /// Late by a hundredth of the time since the begin, or early: 1.2 s at the end of two minutes.

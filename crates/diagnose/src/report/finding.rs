@@ -92,12 +92,24 @@ fn of_its_channel(case: &Case, cured: &Cured) -> Cured {
     own
 }
 
+/// The first of the balances that a channel is measured for, and else the first of all.
+fn balance_of(channel: &str, kinds: &[Kind]) -> Kind {
+    let measured = |kind: &&Kind| match kind {
+        Kind::Parity | Kind::Slip | Kind::Fuel => kind.signal() == channel,
+        Kind::Motion => ["speed_m_s", "tractive_force_n"].contains(&channel),
+        Kind::Shaft => channel.starts_with("engine_"),
+        Kind::Battery | Kind::Voltage => channel.starts_with("battery_"),
+        Kind::Charge => channel == "state_of_charge",
+    };
+    kinds.iter().find(measured).or(kinds.first()).copied().unwrap_or(Kind::Motion)
+}
+
 /// A fault that a channel shows by itself.
 pub fn faulty(fault: &Fault, system: &System) -> FindingReport {
     FindingReport {
         kind: FindingKind::Artefact,
         id: fault.id.to_owned(),
-        balance: system.kinds.first().copied().unwrap_or(Kind::Motion),
+        balance: balance_of(&fault.channel, &system.kinds),
         sentence: words::fault(fault),
         equation: String::new(),
         depends_on: vec![fault.channel.clone()],
@@ -503,6 +515,15 @@ pub mod tests {
     }
 
     /// An error of 1 in runs that were held out, and what becomes of it.
+    #[test]
+    fn a_fault_belongs_to_the_balance_of_its_channel() {
+        let kinds = [Kind::Motion, Kind::Battery, Kind::Voltage];
+        assert_eq!(super::balance_of("battery_current_a", &kinds), Kind::Battery);
+        assert_eq!(super::balance_of("speed_m_s", &kinds), Kind::Motion);
+        // What no balance is measured by stands with the first.
+        assert_eq!(super::balance_of("heading_rad", &kinds), Kind::Motion);
+    }
+
     fn fit(lack_of_fit: f64, after: f64) -> Fit {
         let runs = || FitRuns { runs: Vec::new(), rmse_before: 1.0, rmse_after: after, noise: 0.1 };
         Fit { signal: "speed_m_s".to_owned(), fitted: runs(), held_out: Some(runs()), lack_of_fit }

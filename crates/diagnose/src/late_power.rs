@@ -108,10 +108,10 @@ pub fn late(case: &Case) -> Vec<Late> {
 
 /// Time, current and voltage of every run that has them.
 fn batteries(runs: &[Recorded]) -> Vec<[&[f64]; 3]> {
-    let of = |run: &'_ Recorded| {
+    fn of(run: &Recorded) -> Option<[&[f64]; 3]> {
         let trace = &run.measured.trace;
         Some([trace.time_s(), trace.get(BATTERY[1])?, trace.get(BATTERY[2])?])
-    };
+    }
     runs.iter().filter_map(of).collect()
 }
 
@@ -430,7 +430,8 @@ mod tests {
         let time_s: Vec<f64> = (0..3000).map(|index| 0.1 * f64::from(index)).collect();
         let current = |time_s: f64| 60.0 * (0.5 * time_s).sin() + 25.0 * (1.3 * time_s).cos();
         let late = |by_s: f64| time_s.iter().map(|time| current(time - by_s)).collect::<Vec<f64>>();
-        let voltage = |by_s: f64| late(by_s).iter().map(|current| 312.0 - 0.08 * current).collect::<Vec<f64>>();
+        let voltage =
+            |by_s: f64| late(by_s).iter().map(|current| 312.0 - 0.08 * current).collect::<Vec<f64>>();
         let alone = |by_s: f64| is_current_alone(&[[&time_s, &late(0.8), &voltage(by_s)]], By::Delay(0.8));
         assert!(alone(0.0) && !alone(0.8));
         // A voltage that tells nothing of the current does not tell which of them is late.

@@ -163,7 +163,11 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
             );
         }
         Kind::Angle => all.extend(HARMONICS.map(|n| make(Shape::Harmonic(n), 1.0, 0.0))),
-        Kind::Weight => all.push(make(Shape::Power(1.0), of.round_size(), 0.0)),
+        // In proportion to all of it, or to what is loaded.
+        Kind::Weight => {
+            all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
+            all.push(make(Shape::From, of.round_size(), of.low));
+        }
         Kind::Gate => {
             all.push(make(Shape::On, 1.0, 0.0));
             late(&mut all, 1.0, &FOLLOWED[..1]);
@@ -219,7 +223,10 @@ fn short(variables: &[Checked], index: usize) -> Vec<Factor> {
             }
         }
         Kind::Angle => all.push(make(Shape::Harmonic(1), 1.0, 0.0)),
-        Kind::Weight => all.push(make(Shape::Power(1.0), of.round_size(), 0.0)),
+        Kind::Weight => {
+            all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
+            all.push(make(Shape::From, of.round_size(), of.low));
+        }
         Kind::Gate => all.extend([Shape::On, Shape::Off].map(|shape| make(shape, 1.0, 0.0))),
     }
     all

@@ -158,6 +158,11 @@ fn candidates(
         let state = State { case, system, pool, fit: &case.fit };
         starts.extend(state.most_telling(found, sought.kind).map(|part| vec![part]));
     }
+    // What functions follow may be a law beside all that is known by numbers.
+    let numbers: Vec<Part> = listed.iter().filter(|part| part.spread.is_none()).cloned().collect();
+    if functions && !numbers.is_empty() && rows <= MANY_ROWS && sought.target != Target::Share {
+        starts.push(numbers);
+    }
     // What differs from run to run for no reason may do so by what each run was driven in.
     let reasons: Vec<Part> =
         listed.iter().filter(|part| !case.causes[part.trial.cause].by_run).cloned().collect();

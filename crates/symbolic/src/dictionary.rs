@@ -71,6 +71,17 @@ pub(crate) fn envelopes(variables: &[Checked], wave: usize) -> Vec<Factor> {
     all
 }
 
+/// What may shape what a switch turns on: a fan that catches takes power by its speed.
+pub(crate) fn switched(variables: &[Checked]) -> Vec<Factor> {
+    const SWITCHED: [f64; 3] = [1.0, 2.0, 3.0];
+    let sizes = variables.iter().enumerate().filter(|(_, of)| of.known.kind == Kind::Size);
+    let powers = |(variable, of): (usize, &Checked)| {
+        let scale = of.round_size();
+        SWITCHED.map(|p| Factor { variable, shape: Shape::Power(p), scale, centre: 0.0 })
+    };
+    sizes.flat_map(powers).collect()
+}
+
 /// Everything that one variable can be.
 fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
     let of = &variables[index];
@@ -134,6 +145,7 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
             all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
             curved(&mut all, &[Shape::Decay], of.spread());
             edges(&mut all);
+            latches(&mut all);
         }
         Kind::Signed => {
             all.extend([0.5, 1.0, 2.0].map(|p| make(Shape::Power(p), of.round_size(), 0.0)));
@@ -207,6 +219,8 @@ fn short(variables: &[Checked], index: usize) -> Vec<Factor> {
                 all.push(make(Shape::Under, 1.0, at(0.5)));
             }
             all.push(make(Shape::Decay, 0.4 * of.spread(), 0.0));
+            // Grease that stiffens below a temperature, and not above it.
+            all.extend([Shape::Above(1), Shape::Below(1)].map(|shape| make(shape, of.round_size(), at(0.5))));
             all.extend([Shape::Step, Shape::StepDown].map(|step| make(step, 0.05 * of.spread(), at(0.5))));
         }
         Kind::Signed => {

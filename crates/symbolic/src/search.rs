@@ -5,7 +5,7 @@
 
 use crate::SymbolicError;
 use crate::chance::{Chance, Null, persistence, statistic};
-use crate::dictionary::{dictionary, envelopes};
+use crate::dictionary::{dictionary, envelopes, switched};
 use crate::levels::levelled;
 use crate::polish::{Polished, amplitudes, polish};
 use crate::problem::Bench;
@@ -231,9 +231,14 @@ impl Hunt<'_> {
             })
             .collect();
         let pulses = peaks.iter().flat_map(|peak| pulses(&self.screen.terms[*peak].factors[0]));
+        let driven = self.best_switches(&gains).into_iter().flat_map(|switch| {
+            let of = move |power| Term::product(switch, power);
+            switched(&self.bench.variables).into_iter().filter_map(of)
+        });
         let judged: Vec<(f64, Term)> = modulated
             .into_iter()
             .chain(pulses)
+            .chain(driven)
             .collect::<Vec<Term>>()
             .into_par_iter()
             .map(|term| (self.screen.gain_of(self.bench, &term, &basis, &left), term))
@@ -256,6 +261,25 @@ impl Hunt<'_> {
             }
         }
         (statistic(best, dot(&left, &left), left.len()), terms)
+    }
+
+    /// The switches of the dictionary that add most by themselves, one of each variable.
+    fn best_switches(&self, gains: &[f64]) -> Vec<Factor> {
+        let switch = |term: &Term| match term.factors[..] {
+            [factor] if factor.shape == Shape::Latch => Some(factor),
+            _ => None,
+        };
+        let mut best: Vec<(f64, Factor)> = Vec::new();
+        for (gain, factor) in
+            gains.iter().zip(&self.screen.terms).filter_map(|(gain, term)| Some((*gain, switch(term)?)))
+        {
+            match best.iter_mut().find(|(_, own)| own.variable == factor.variable) {
+                Some(own) if own.0 < gain => *own = (gain, factor),
+                Some(_) => {}
+                None => best.push((gain, factor)),
+            }
+        }
+        best.into_iter().map(|(_, factor)| factor).collect()
     }
 
     /// Each term of each law in turn gives its place to others.

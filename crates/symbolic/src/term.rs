@@ -32,11 +32,13 @@ impl Term {
         }))
     }
 
-    /// The same with one of its steps the other way, for each of them.
+    /// The same with one of its steps the other way, for each of them, or with what wears off as what grows.
     pub fn turned(&self) -> Vec<Self> {
         let turned = |shape: Shape| match shape {
             Shape::Step => Some(Shape::StepDown),
             Shape::StepDown => Some(Shape::Step),
+            Shape::Decay => Some(Shape::Rise),
+            Shape::Rise => Some(Shape::Decay),
             _ => None,
         };
         let of = |place: usize| {

@@ -736,6 +736,27 @@ fn a_loss_of_the_drive_in_turns_is_found_as_a_share_of_it() {
     assert!(said.findings[0].depends_on.contains(&"curvature_per_m".to_owned()), "{}", said.answer);
 }
 
+/// A wheel that rubs in bends to the right alone, which some of the runs take in a moment: nothing in nearly all rows, and far more
+/// than chance in those.
+#[test]
+fn a_drag_in_short_bends_one_way_is_found() {
+    /// How long a bend lasts to either side of its middle [s], and how it turns [1/m].
+    const LASTS_S: f64 = 1.2;
+    const TURNS_PER_M: f64 = 0.06;
+    let bend = |t: f64, at_s: f64| TURNS_PER_M * (-((t - at_s) / LASTS_S).powi(2)).exp();
+    let curvature_per_m = |t: f64, run: usize| {
+        let right = if run.is_multiple_of(2) { bend(t, 10.0 + run as f64) } else { 0.0 };
+        right - bend(t, 21.0 + run as f64)
+    };
+    let rubs_n = |v: f64, _: f64, kappa: f64| 9000.0 * (v * v * kappa).max(0.0);
+    let found = found(&dragged("curvature_per_m", curvature_per_m, rubs_n), &Options::default()).unwrap();
+    let said = &found.diagnosis;
+    assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);
+    let law = &said.findings[0];
+    assert!(law.depends_on.contains(&"curvature_per_m".to_owned()), "{}", said.answer);
+    assert!(law.equation.contains("max("), "{}", law.equation);
+}
+
 /// Oil that was recorded to warm up thins: a drag by its temperature, which no clock and no start says.
 #[test]
 fn oil_that_was_recorded_drags_by_its_temperature() {

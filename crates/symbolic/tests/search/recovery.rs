@@ -149,6 +149,32 @@ fn a_switch_that_latches_is_found_with_its_levels() {
     assert!((on - ON_M_S).abs() < 0.1 && (on - over - OFF_M_S).abs() < 0.1, "{on} {over}");
 }
 
+/// A fan that catches at one speed and lets go at another takes, while it is driven, by the cube of the speed.
+#[test]
+fn what_a_switch_turns_on_goes_by_a_speed_of_its_own() {
+    const ON_M_S: f64 = 6.37;
+    const OFF_M_S: f64 = 3.18;
+    let caught = Cell::new(false);
+    let fan = |at: &At| {
+        caught.set(at.v >= ON_M_S || at.v > OFF_M_S && at.t > 0.0 && caught.get());
+        if caught.get() { 500.0 * (at.v / 8.0).powi(3) } else { 0.0 }
+    };
+    let (found, r2) = found(8, 60.0, fan);
+    let law = found.law().unwrap();
+    let driven = law.text.contains("latched(v, ") && law.text.contains(")^3");
+    assert!(r2 > 0.95 && law.terms == 1 && driven, "{r2} {}", law.text);
+}
+
+/// Grease that stiffens below a temperature: nothing of it is there above, and a line through all temperatures would say so.
+#[test]
+fn what_sets_in_below_a_temperature_goes_by_a_speed() {
+    let (found, r2) = found(11, 60.0, |at| 9.0 * (14.2 - at.temperature).max(0.0) * at.v);
+    let law = found.law().unwrap();
+    let below = law.text.contains("max((temperature1_c - temperature)") && law.names("v");
+    assert!(r2 > 0.95 && law.terms == 1 && below, "{r2} {}", law.text);
+    close(constant(&found, "temperature1_c"), 14.2);
+}
+
 /// A value as it is followed with a time constant, from where it had settled.
 fn late(lag_s: f64, of: fn(&At) -> f64) -> impl Fn(&At) -> f64 {
     let followed = Cell::new((0.0, 0.0));

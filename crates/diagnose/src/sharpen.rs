@@ -63,7 +63,9 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
     if let Some(own) = found.accepted.iter().find(|one| by_speeds(one.trial.cause)) {
         let own = case.causes[own.trial.cause].id;
         let mut others = round.causes.iter().filter(|one| by_speeds(one.0) && case.causes[one.0].id != own);
-        if let Some((cause, shape, _)) = others.next() {
+        if let Some((cause, shape)) = of_two_speeds(case, system, pool, found, own)? {
+            consider(cause, &shape);
+        } else if let Some((cause, shape, _)) = others.next() {
             consider(*cause, shape);
         }
     }
@@ -100,6 +102,39 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
         }
     }
     Ok(added)
+}
+
+/// The likeliest of two speeds of the causes by speeds that go by another name: between two of the points of a variator lies a tooth, and
+/// one point by itself has none.
+fn of_two_speeds(
+    case: &Case,
+    system: &System,
+    pool: &mut Pool,
+    found: &Found,
+    but: &str,
+) -> Result<Option<(usize, Vec<f64>)>, DiagnoseError> {
+    /// Places over the range of speeds.
+    const PLACES: u8 = 16;
+    let Some(fastest_m_s) = case.fastest_m_s() else { return Ok(None) };
+    let others = (0..case.causes.len()).filter(|cause| {
+        let cause = &case.causes[*cause];
+        let shaped = cause.terms.iter().filter(|term| !term.linear).count();
+        cause.speeds() == 2 && shaped == 2 && cause.id != but && case.wanted(cause.id)
+    });
+    let at = |place: u8| fastest_m_s * f64::from(place) / f64::from(PLACES);
+    let mut best: Option<(f64, usize, Vec<f64>)> = None;
+    for cause in others {
+        for one in 1..PLACES {
+            for other in one + 1..=PLACES {
+                let shape = vec![at(one), at(other)];
+                let gain = likely(case, system, pool, found, (cause, &shape))?;
+                if best.as_ref().is_none_or(|(greatest, ..)| gain > *greatest) {
+                    best = Some((gain, cause, shape));
+                }
+            }
+        }
+    }
+    Ok(best.map(|(_, cause, shape)| (cause, shape)))
 }
 
 /// Adds trials of the same cause at one more speed, and at another, while each makes the recordings more likely than chance would:

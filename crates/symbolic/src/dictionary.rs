@@ -150,6 +150,13 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
         Kind::Signed => {
             all.extend([0.5, 1.0, 2.0].map(|p| make(Shape::Power(p), of.round_size(), 0.0)));
             if of.by_size {
+                // What sets in beyond a force, whichever way it acts: iron that saturates.
+                if of.known.name == DRIVE {
+                    for power in HINGES {
+                        let from = |share: f64| make(Shape::Above(power), of.round_size(), share * of.size());
+                        all.extend(CENTRES.map(from));
+                    }
+                }
                 return all;
             }
             if of.negative {

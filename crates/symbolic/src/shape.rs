@@ -141,6 +141,7 @@ fn takes_size(shape: Shape, of: &Checked) -> bool {
         Shape::Decay | Shape::Rise | Shape::Latch => both,
         Shape::Lag(p, _) => both && p % 2 == 1,
         Shape::Tanh => lost && !of.negative,
+        Shape::Above(_) => of.by_size,
         _ => false,
     }
 }

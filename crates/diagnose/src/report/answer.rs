@@ -5,7 +5,7 @@ use super::series::{corrections, effects, residuals};
 use super::shown::shown;
 use super::{Calibrated, Diagnosed, Diagnosis, Fit, FitRuns, Tried, Verdict, bands};
 use crate::balance::Kind;
-use crate::catalogue::Class;
+use crate::catalogue::{Class, Form};
 use crate::elsewhere::elsewhere;
 use crate::events::Event;
 use crate::experiment::Proposals;
@@ -53,11 +53,13 @@ pub fn report(
     let own = |cured: &Cured| cured.cause.class != Class::Artefact && cured.may_be_none();
     let slight = refined.causes.iter().any(own);
     let courses = refined.is_switched_alone();
+    let over_time =
+        !refined.causes.is_empty() && refined.causes.iter().all(|cured| cured.cause.form == Form::OverTime);
     let verdict = if beside.withheld.is_some() {
         Verdict::CannotTell
     } else {
         let strain = strain.map_or(0.0, |(_, strain)| strain);
-        verdict(&findings, &fit, &Doubts { timed: timed(refined), courses, slight, strain })
+        verdict(&findings, &fit, &Doubts { timed: timed(refined), courses, over_time, slight, strain })
     };
     notes.extend(remarks(case, &found.unproven));
     notes.extend(beside.remark.clone());

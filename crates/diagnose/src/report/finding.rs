@@ -154,6 +154,8 @@ pub struct Doubts {
     pub timed: bool,
     /// Whether all that was found is switched in each run by itself, of which no other run tells.
     pub courses: bool,
+    /// Whether all that was found is functions of time.
+    pub over_time: bool,
     /// Whether any cause may as well be none.
     pub slight: bool,
     /// How far a free parameter ends from what was known of it, in standard deviations.
@@ -167,7 +169,7 @@ pub struct Doubts {
 /// many standard deviations (`strain`) from what was known of it stands in for something as well. A fault that may as well be
 /// physics leaves open whether anything is missing, and so does a cause that may as well be none (`slight`). What makes the error grow in
 /// runs that it never saw is not certain either, whatever it is; nor are courses of each run that explain next to nothing beside an
-/// error that noise does not.
+/// error that noise does not, or functions of time that follow not even the runs that they were made of.
 pub fn verdict(findings: &[FindingReport], fit: &Fit, doubts: &Doubts) -> Verdict {
     /// An error of so many times the noise is no matter of how well the noise is known.
     const FAR: f64 = 10.0;
@@ -191,7 +193,7 @@ pub fn verdict(findings: &[FindingReport], fit: &Fit, doubts: &Doubts) -> Verdic
     /// And it follows whatever there is: where so much more than the noise is left it has to be more than this share of all.
     const BEYOND: f64 = 2.0;
     const LITTLE: f64 = 0.1;
-    let Doubts { timed, courses, slight, strain } = *doubts;
+    let Doubts { timed, courses, over_time, slight, strain } = *doubts;
     let far = fit.lack_of_fit > FAR;
     let any = |kind: FindingKind| findings.iter().any(|finding| finding.kind == kind);
     let Some(first) = findings.first() else {
@@ -213,7 +215,8 @@ pub fn verdict(findings: &[FindingReport], fit: &Fit, doubts: &Doubts) -> Verdic
     let says_little = fit.held_out.as_ref().is_some_and(leaves) && !(timed && follows);
     let rough = far && (!timed || far_fitted) || says_little;
     let trifling = courses && first.share_of_mismatch < LITTLE && fit.lack_of_fit > BEYOND;
-    let doubtful = claims && (rough || fit.grows() && !courses || slight || trifling) || strained;
+    let strays = over_time && !follows;
+    let doubtful = claims && (rough || fit.grows() && !courses || slight || trifling || strays) || strained;
     if first.kind == FindingKind::Unlisted && !first.is_doubtful() && !doubtful {
         Verdict::Unlisted
     } else if first.is_doubtful()
@@ -514,7 +517,6 @@ pub mod tests {
         }
     }
 
-    /// An error of 1 in runs that were held out, and what becomes of it.
     #[test]
     fn a_fault_belongs_to_the_balance_of_its_channel() {
         let kinds = [Kind::Motion, Kind::Battery, Kind::Voltage];
@@ -524,6 +526,7 @@ pub mod tests {
         assert_eq!(super::balance_of("heading_rad", &kinds), Kind::Motion);
     }
 
+    /// An error of 1 in runs that were held out, and what becomes of it.
     fn fit(lack_of_fit: f64, after: f64) -> Fit {
         let runs = || FitRuns { runs: Vec::new(), rmse_before: 1.0, rmse_after: after, noise: 0.1 };
         Fit { signal: "speed_m_s".to_owned(), fitted: runs(), held_out: Some(runs()), lack_of_fit }
@@ -614,6 +617,20 @@ pub mod tests {
         };
         assert_eq!(slight("driveline_efficiency", FindingKind::Physics), Verdict::CannotTell);
         assert_eq!(slight("latency", FindingKind::Artefact), Verdict::SensorArtefact);
+    }
+
+    #[test]
+    fn a_course_that_does_not_follow_its_own_runs_is_no_certainty() {
+        let verdict = |after: f64, over_time: bool| {
+            let mut fit = fit(5.0, 0.5);
+            fit.fitted.rmse_after = after;
+            let found = finding(FindingKind::Physics, "drawbar_load", None);
+            super::verdict(&[found], &fit, &Doubts { timed: true, over_time, ..Doubts::default() })
+        };
+        assert_eq!(verdict(0.2, true), Verdict::MissingPhysics);
+        assert_eq!(verdict(0.5, true), Verdict::CannotTell);
+        // What stands beside it may be rough.
+        assert_eq!(verdict(0.5, false), Verdict::MissingPhysics);
     }
 
     #[test]

@@ -150,13 +150,7 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
         Kind::Signed => {
             all.extend([0.5, 1.0, 2.0].map(|p| make(Shape::Power(p), of.round_size(), 0.0)));
             if of.by_size {
-                // What sets in beyond a force, whichever way it acts: iron that saturates.
-                if of.known.name == DRIVE {
-                    for power in HINGES {
-                        let from = |share: f64| make(Shape::Above(power), of.round_size(), share * of.size());
-                        all.extend(CENTRES.map(from));
-                    }
-                }
+                all.extend(beyond(of, index));
                 return all;
             }
             if of.negative {
@@ -193,6 +187,16 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
         }
     }
     all
+}
+
+/// What sets in beyond a force of the drive, whichever way it acts: iron that saturates. Nothing of another variable.
+fn beyond(of: &Checked, index: usize) -> Vec<Factor> {
+    let from = |(power, share): (u8, f64)| {
+        let (scale, centre) = (of.round_size(), share * of.size());
+        Factor { variable: index, shape: Shape::Above(power), scale, centre }
+    };
+    let each = HINGES.into_iter().flat_map(|power| CENTRES.map(|share| (power, share)));
+    if of.known.name == DRIVE { each.map(from).collect() } else { Vec::new() }
 }
 
 /// What one variable can be beside another.

@@ -120,10 +120,12 @@ fn batteries(runs: &[Recorded]) -> Vec<[&[f64]; 3]> {
 fn is_current_alone(batteries: &[[&[f64]; 3]], by: By) -> bool {
     /// Share of what the recorded current leaves of the voltage.
     const BETTER: f64 = 0.9;
-    let left = |current_of: &dyn Fn(&[f64], &[f64]) -> Vec<f64>| -> f64 {
+    let left = |by: Option<By>| -> f64 {
         let (mut voltages, mut currents, mut products) = (0.0, 0.0, 0.0);
         for [time_s, current_a, voltage_v] in batteries {
-            let (current, voltage) = (fast(time_s, &current_of(time_s, current_a)), fast(time_s, voltage_v));
+            let in_time = by.map(|by| sooner(time_s, current_a, by));
+            let current = fast(time_s, in_time.as_deref().unwrap_or(current_a));
+            let voltage = fast(time_s, voltage_v);
             for (current, voltage) in current.iter().zip(voltage) {
                 if current.is_finite() && voltage.is_finite() {
                     voltages += voltage * voltage;
@@ -135,9 +137,7 @@ fn is_current_alone(batteries: &[[&[f64]; 3]], by: By) -> bool {
         let followed = if currents > 0.0 { products.min(0.0).powi(2) / currents } else { 0.0 };
         voltages - followed
     };
-    let as_it_is = left(&|_, current_a| current_a.to_vec());
-    let set_right = left(&|time_s, current_a| sooner(time_s, current_a, by));
-    set_right < BETTER * as_it_is
+    left(Some(by)) < BETTER * left(None)
 }
 
 /// Samples as they would have been recorded in time; of what a late sensor would have said after the end the last is told.

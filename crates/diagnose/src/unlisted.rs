@@ -333,21 +333,8 @@ fn beside(
     }
     let state = State { case, system, pool, fit: &case.fit };
     let mut found = found;
-    // A law that the runs do not teach each other leaves what was found as it was, but for courses of time, which they teach no
-    // better, where it says far more than those do.
-    let concluded = best.clone().and_then(|best| concluded(&state, best, &found));
-    let concluded = concluded.filter(|concluded| worth(&concluded.stand) > worth(&found.stand));
-    let is_law = |part: &Part| state.cause(&part.trial).law.is_some();
-    let taught = concluded.as_ref().is_some_and(|concluded| concluded.stand.parts.iter().any(is_law));
-    let course = |part: &Part| state.timed(part) || state.cause(&part.trial).is_course();
-    let courses = !found.stand.parts.is_empty() && found.stand.parts.iter().all(course);
-    let beyond = |best: &Stand| worth(best) - worth(&found.stand) > BEYOND_CHANCE;
-    if let Some(best) = best.filter(|best| !taught && courses && beyond(best)) {
-        let found = state.found(best, found.first.clone(), (found.tried.clone(), Vec::new()), found.needed);
-        return Ok((found, None));
-    }
-    if let Some(concluded) = concluded {
-        return Ok((concluded, None));
+    if let Some(other) = best.and_then(|best| state.with_a_law(best, &found)) {
+        return Ok((other, None));
     }
     if let Some(other) = &as_good {
         state.sets_as_good(&mut found, std::slice::from_ref(other));
@@ -428,6 +415,22 @@ fn is_undetermined(law: &Law) -> bool {
 }
 
 impl State<'_> {
+    /// What a set with a law comes down to, where that says more than what was found. A law that the runs do not teach each other is
+    /// none, unless courses of time were found, which they teach no better, and it says far more than those do.
+    fn with_a_law(&self, best: Stand, found: &Found) -> Option<Found> {
+        let is_law = |part: &Part| self.cause(&part.trial).law.is_some();
+        let course = |part: &Part| self.timed(part) || self.cause(&part.trial).is_course();
+        let courses = !found.stand.parts.is_empty() && found.stand.parts.iter().all(course);
+        let beyond = worth(&best) - worth(&found.stand) > BEYOND_CHANCE;
+        let told = concluded(self, best.clone(), found);
+        let told = told.filter(|told| worth(&told.stand) > worth(&found.stand));
+        let taught = told.as_ref().is_some_and(|told| told.stand.parts.iter().any(is_law));
+        if taught || !courses || !beyond {
+            return told;
+        }
+        Some(self.found(best, found.first.clone(), (found.tried.clone(), Vec::new()), found.needed))
+    }
+
     /// How much better than what was found a set with a law has to be. What differs from run to run has no shape that would
     /// be known from elsewhere, and three causes that one term says better patch each other.
     fn margin(&self, found: &Found, stand: &Stand) -> f64 {

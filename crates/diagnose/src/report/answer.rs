@@ -51,15 +51,13 @@ pub fn report(
     let fit = fit(case, system, Some(found), proof);
     let strain = refined.strain(case);
     let own = |cured: &Cured| cured.cause.class != Class::Artefact && cured.may_be_none();
-    let slight = refined.causes.iter().any(own);
+    let slight = refined.causes.iter().any(own) || over_time(refined) && !fit.is_followed();
     let courses = refined.is_switched_alone();
-    let over_time =
-        !refined.causes.is_empty() && refined.causes.iter().all(|cured| cured.cause.form == Form::OverTime);
     let verdict = if beside.withheld.is_some() {
         Verdict::CannotTell
     } else {
         let strain = strain.map_or(0.0, |(_, strain)| strain);
-        verdict(&findings, &fit, &Doubts { timed: timed(refined), courses, over_time, slight, strain })
+        verdict(&findings, &fit, &Doubts { timed: timed(refined), courses, slight, strain })
     };
     notes.extend(remarks(case, &found.unproven));
     notes.extend(beside.remark.clone());
@@ -191,6 +189,12 @@ fn told_by_itself(case: &Case, refined: &Refined, events: &[Event]) -> words::Ow
 /// Whether anything that was found is what each run tells of itself alone: a function of time, or spells.
 fn timed(refined: &Refined) -> bool {
     refined.causes.iter().any(|cured| cured.in_single_runs() || cured.takes_its_own_course())
+}
+
+/// Whether all that was found is functions of time.
+fn over_time(refined: &Refined) -> bool {
+    let of_time = |cured: &Cured| cured.cause.form == Form::OverTime;
+    !refined.causes.is_empty() && refined.causes.iter().all(of_time)
 }
 
 fn ids(case: &Case, wanted: bool) -> Vec<String> {

@@ -168,6 +168,13 @@ impl Fit {
     pub(crate) fn grows(&self) -> bool {
         self.held_out.as_ref().is_some_and(FitRuns::grows)
     }
+
+    /// Whether a speed is as near to the noise as what each run tells of itself can follow it; of other signals nobody knows.
+    pub(crate) fn is_followed(&self) -> bool {
+        /// So many times the noise.
+        const FOLLOWED: f64 = 3.0;
+        self.signal != "speed_m_s" || self.fitted.rmse_after < FOLLOWED * self.fitted.noise
+    }
 }
 
 /// A free parameter.

@@ -58,7 +58,7 @@ enum By {
 /// How late a power is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Late {
-    /// Its channels that are.
+    /// Those of its channels that are late.
     channels: &'static [&'static str],
     /// By how much.
     by: By,
@@ -99,7 +99,7 @@ pub fn late(case: &Case) -> Vec<Late> {
             By::Drift(rate) => (DRIFT, rate.abs() * case.longest_s()),
         };
         let matters = case.wanted(id) && late_s > LEAST_S.max(2.0 * renewal_s);
-        let alone = kind == Kind::Battery && is_current_alone(&batteries(&case.runs), by);
+        let alone = matters && kind == Kind::Battery && is_current_alone(&batteries(&case.runs), by);
         let channels = if alone { &BATTERY[..2] } else { channels };
         matters.then_some(Late { channels, by, sd })
     };

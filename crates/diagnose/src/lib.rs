@@ -196,11 +196,11 @@ fn diagnose_once(
     let (system, mut pool, found) = look.closer(&mut case)?;
     let listed = found.clone();
     let (found, law) = unlisted::unlisted(&mut case, &system, &mut pool, found)?;
-    let told = found.clone();
+    let law = law.map(|law| (found.clone(), law));
     let events = brakes::standing(&case, &refine::plain(&case, &pool, &found), &events)?;
     let proven = withdraw::proven(&case, &system, &mut pool, found, &events, &faults)?;
     let proven = withdraw::or_listed(&case, &system, &mut pool, (proven, listed), &events, &faults)?;
-    let proven = withdraw::or_law(&case, &system, &mut pool, proven, (&told, law), &events, &faults)?;
+    let proven = withdraw::or_law(&case, &system, &mut pool, proven, law, &events, &faults)?;
     let proven = foreseen::foreseen(&case, &system, &mut pool, proven, &events, &faults)?;
     let proven::Proven { found, mut refined, withheld, proof } = proven;
     let next = experiment::propose(&case, &system, &pool, &found, &refined)?;

@@ -138,24 +138,24 @@ pub fn or_listed(
     Ok(if worse || poorer { proven } else { other })
 }
 
-/// What was proven; where runs held out denied some of the listed causes that were `found`, and a law that nobody listed says as much as
-/// they did, what is proven of that, if it foretells those runs better.
+/// What was proven; where runs held out denied some of the listed causes that were found, and a law that nobody listed, which stands
+/// beside them here, says as much as they did, what is proven of that, if it foretells those runs better.
 pub fn or_law(
     case: &Case,
     system: &System,
     pool: &mut Pool,
     proven: Proven,
-    (found, law): (&Found, Option<Stand>),
+    law: Option<(Found, Stand)>,
     events: &[Event],
     faults: &[Fault],
 ) -> Result<Proven, DiagnoseError> {
     /// The error has to be less than this share of what it is without.
     const BETTER: f64 = 0.85;
     let stayed = |part: &Part| proven.found.stand.parts.iter().any(|own| own.trial.cause == part.trial.cause);
-    let denied = !found.stand.parts.iter().all(stayed);
-    let Some(law) = law.filter(|_| denied) else { return Ok(proven) };
+    let denied = |found: &Found| !found.stand.parts.iter().all(stayed);
+    let Some((found, law)) = law.filter(|(found, _)| denied(found)) else { return Ok(proven) };
     let state = State { case, system, pool, fit: &case.fit };
-    let told = state.found(law, found.first.clone(), (found.tried.clone(), Vec::new()), found.needed);
+    let told = state.found(law, found.first, (found.tried, Vec::new()), found.needed);
     let other = self::proven(case, system, pool, told, events, faults)?;
     let is_law = |cured: &Cured| cured.cause.law.is_some();
     if !other.refined.causes.iter().any(is_law) || other.withheld.is_some() {

@@ -176,17 +176,23 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
             );
         }
         Kind::Angle => all.extend(HARMONICS.map(|n| make(Shape::Harmonic(n), 1.0, 0.0))),
-        // In proportion to all of it, or to what is loaded.
-        Kind::Weight => {
-            all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
-            all.push(make(Shape::From, of.round_size(), of.low));
-        }
+        Kind::Weight => all.extend(weighed(of, index)),
         Kind::Gate => {
             all.push(make(Shape::On, 1.0, 0.0));
             late(&mut all, 1.0, &FOLLOWED[..1]);
         }
     }
     all
+}
+
+/// What goes in proportion to all of a weight, or to what is loaded.
+fn weighed(of: &Checked, index: usize) -> [Factor; 2] {
+    [(Shape::Power(1.0), 0.0), (Shape::From, of.low)].map(|(shape, centre)| Factor {
+        variable: index,
+        shape,
+        scale: of.round_size(),
+        centre,
+    })
 }
 
 /// What sets in beyond a force of the drive, whichever way it acts: iron that saturates. Nothing of another variable.
@@ -248,10 +254,7 @@ fn short(variables: &[Checked], index: usize) -> Vec<Factor> {
             }
         }
         Kind::Angle => all.push(make(Shape::Harmonic(1), 1.0, 0.0)),
-        Kind::Weight => {
-            all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
-            all.push(make(Shape::From, of.round_size(), of.low));
-        }
+        Kind::Weight => all.extend(weighed(of, index)),
         Kind::Gate => all.extend([Shape::On, Shape::Off].map(|shape| make(shape, 1.0, 0.0))),
     }
     all

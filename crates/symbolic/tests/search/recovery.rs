@@ -131,17 +131,22 @@ fn what_is_clocked_is_found_as_a_pulse_with_its_period_and_its_share() {
     assert!((on - ON).abs() < 0.02, "{on} {}", law.text);
 }
 
+/// Whether a switch is on that goes on at one speed and off at another; each run begins with it off.
+fn switch(on_m_s: f64, off_m_s: f64) -> impl Fn(&At) -> bool {
+    let on = Cell::new(false);
+    move |at| {
+        on.set(at.v >= on_m_s || at.v > off_m_s && at.t > 0.0 && on.get());
+        on.get()
+    }
+}
+
 /// A flap that opens at one speed and closes at another remembers which it passed last: no function of speed says that.
 #[test]
 fn a_switch_that_latches_is_found_with_its_levels() {
     const ON_M_S: f64 = 6.37;
     const OFF_M_S: f64 = 3.18;
-    let open = Cell::new(false);
-    let flap = |at: &At| {
-        open.set(at.v >= ON_M_S || at.v > OFF_M_S && at.t > 0.0 && open.get());
-        if open.get() { 450.0 } else { 0.0 }
-    };
-    let (found, r2) = found(8, 100.0, flap);
+    let open = switch(ON_M_S, OFF_M_S);
+    let (found, r2) = found(8, 100.0, |at| if open(at) { 450.0 } else { 0.0 });
     let law = found.law().unwrap();
     assert!(r2 > 0.95 && law.terms == 1 && law.text.contains("latched(v, "), "{r2} {}", law.text);
     close(constant(&found, "a1_n"), 450.0);
@@ -154,12 +159,8 @@ fn a_switch_that_latches_is_found_with_its_levels() {
 fn what_a_switch_turns_on_goes_by_a_speed_of_its_own() {
     const ON_M_S: f64 = 6.37;
     const OFF_M_S: f64 = 3.18;
-    let caught = Cell::new(false);
-    let fan = |at: &At| {
-        caught.set(at.v >= ON_M_S || at.v > OFF_M_S && at.t > 0.0 && caught.get());
-        if caught.get() { 500.0 * (at.v / 8.0).powi(3) } else { 0.0 }
-    };
-    let (found, r2) = found(8, 60.0, fan);
+    let caught = switch(ON_M_S, OFF_M_S);
+    let (found, r2) = found(8, 60.0, |at| if caught(at) { 500.0 * (at.v / 8.0).powi(3) } else { 0.0 });
     let law = found.law().unwrap();
     let driven = law.text.contains("latched(v, ") && law.text.contains(")^3");
     assert!(r2 > 0.95 && law.terms == 1 && driven, "{r2} {}", law.text);

@@ -3,7 +3,7 @@
 use crate::balance::Kind;
 use crate::catalogue::Cause;
 use crate::line::Line;
-use crate::nameable::variables;
+use crate::nameable::{agreed_m_s2, moved_m_s2, variables};
 use crate::noise::Whiteners;
 use crate::recorded::Recorded;
 use crate::rows::Row;
@@ -11,9 +11,15 @@ use crate::said::Said;
 use crate::state::{Part, Stand, State};
 use crate::trial::{Pool, Shown, effect, lost_drive_n, per_newton};
 use crate::{Case, DiagnoseError, System};
-use headland_symbolic::{Law, Nuisance, Options, Problem, Rows, SymbolicError, Target, Variable, find};
+use headland_symbolic::{
+    Enters, Law, Nuisance, Options, Problem, Rows, SymbolicError, Target, Variable, find,
+};
+
+/// What forces make.
+const ACCELERATION: &str = "acceleration";
 
 /// What is sought in a balance.
+#[derive(Clone)]
 pub struct Sought {
     /// The balance.
     pub kind: Kind,
@@ -25,6 +31,8 @@ pub struct Sought {
     somewhen: bool,
     /// Force of the drive that a share of it is lost of, sample by sample of every run [N].
     drive_n: Vec<Vec<f64>>,
+    /// Acceleration that a force may be made of, likewise [m/s²]; none where it may not.
+    accelerations_m_s2: Option<Vec<Vec<f64>>>,
     /// What a formula of one makes of the rows of each balance that it shows in, sample by sample of every run: one watt or
     /// one newton, or all that a share is lost of.
     shows: Shown,
@@ -55,19 +63,33 @@ impl Sought {
         };
         let drive_n = case.runs.iter().zip(&case.nominal).map(drive_n).collect();
         let placed = case.runs.iter().any(|run| run.measured.trace.get("position_m").is_some());
+        let of_motion = target == Target::Force && kind == Kind::Motion;
+        let accelerations_m_s2 = if of_motion { agreed_m_s2(case) } else { None };
         Ok(shows.iter().any(|(shown, _)| *shown == kind).then_some(Self {
             kind,
             target,
             placed,
             somewhen: true,
             drive_n,
+            accelerations_m_s2,
             shows,
         }))
     }
 
     /// The same by a formula that names neither times nor places.
     pub fn anywhen(&self) -> Self {
-        Self { somewhen: false, drive_n: self.drive_n.clone(), shows: self.shows.clone(), ..*self }
+        Self { somewhen: false, ..self.clone() }
+    }
+
+    /// Whether a law of a force hangs on the acceleration that it makes.
+    pub fn hangs(&self, law: &Law) -> bool {
+        self.accelerations_m_s2.is_some() && law.text.contains(ACCELERATION)
+    }
+
+    /// The same once a law is known: the vehicle accelerates as it does with that, where that hangs on the acceleration.
+    pub fn moved_by(&self, case: &Case, law: &Law) -> Self {
+        let moved_m_s2 = self.hangs(law).then(|| moved_m_s2(case, &law.prediction));
+        Self { accelerations_m_s2: moved_m_s2.or_else(|| self.accelerations_m_s2.clone()), ..self.clone() }
     }
 
     /// The same of the drive without what its force answers, sample by sample of every run [N].
@@ -90,7 +112,7 @@ impl Sought {
             .iter()
             .map(|(kind, of)| (*kind, of.iter().enumerate().map(of_one).collect()))
             .collect();
-        Self { drive_n, shows, ..*self }
+        Self { drive_n, shows, ..self.clone() }
     }
 
     /// What a balance's rows are made of, of what a formula says of a run; nothing where it does not show there.
@@ -150,10 +172,15 @@ impl Sought {
         }
         // What an engine gives beside its wheels goes with the size of their force, whichever way that acts: its sign is that of a power
         // that is known.
-        let by_size = self.target != Target::Share;
-        if !by_size || self.drive_n.iter().all(|run| !run.is_empty()) && self.target == Target::Power {
+        let of_share = self.target == Target::Share;
+        if of_share || self.drive_n.iter().all(|run| !run.is_empty()) && self.target == Target::Power {
             let (name, unit) = ("F_drive".to_owned(), "N".to_owned());
-            all.push(Variable { name, unit, runs: self.drive_n.clone(), finest: 0.0, by_size });
+            let enters = if of_share { Enters::Freely } else { Enters::BySize };
+            all.push(Variable { name, unit, runs: self.drive_n.clone(), finest: 0.0, enters });
+        }
+        if let Some(runs) = &self.accelerations_m_s2 {
+            let (name, unit) = (ACCELERATION.to_owned(), "m/s²".to_owned());
+            all.push(Variable { name, unit, runs: runs.clone(), finest: 0.0, enters: Enters::Bent });
         }
         all
     }
@@ -351,7 +378,7 @@ fn enough(fit: &[bool], rows: &[Vec<f64>]) -> Vec<bool> {
 mod tests {
     use super::{Sought, enough};
     use crate::balance::Kind;
-    use headland_symbolic::{Law, Target};
+    use headland_symbolic::{Enters, Law, Target};
 
     #[test]
     fn a_loss_that_takes_all_that_a_force_rises_by_answers_with_itself() {
@@ -362,6 +389,7 @@ mod tests {
             placed: false,
             somewhen: true,
             drive_n: vec![force_n.clone()],
+            accelerations_m_s2: None,
             shows: Vec::new(),
         };
         let loses = |share: &dyn Fn(f64) -> f64| {

@@ -7,8 +7,8 @@ use crate::line::Line;
 use crate::recorded::Recorded;
 use crate::said::inputs;
 use headland_calibrate::statistics::median;
-use headland_sim::{Inputs, travelled};
-use headland_symbolic::Variable;
+use headland_sim::{Inputs, local_fit, travelled};
+use headland_symbolic::{Enters, Variable};
 
 /// A wave takes so many blocks of samples.
 const BLOCKS: f64 = 4.0;
@@ -114,7 +114,7 @@ pub fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
             unit: unit.to_owned(),
             runs: runs.filter(whole)?,
             finest: finest(name),
-            by_size: name == "acceleration" && !forced,
+            enters: if name == "acceleration" && !forced { Enters::BySize } else { Enters::Freely },
         })
     };
     offered.into_iter().filter_map(variable).collect()
@@ -123,9 +123,14 @@ pub fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
 /// Acceleration of a run [m/s²]: as the force makes it, which shows what is sudden, and over longer as the speed does. What the
 /// nominal parameters are wrong by would else be an acceleration wherever a speed is held, and tell of that speed.
 fn accelerated_m_s2(run: &Recorded) -> Vec<f64> {
+    as_it_lasts_m_s2(run, &run.acceleration_m_s2)
+}
+
+/// The same of an acceleration that forces make.
+fn as_it_lasts_m_s2(run: &Recorded, made: &[f64]) -> Vec<f64> {
     /// Beside the median over so long to either side nothing is sudden [s].
     const AROUND_S: f64 = 3.0;
-    let (time_s, made) = (run.measured.trace.time_s(), &run.acceleration_m_s2);
+    let time_s = run.measured.trace.time_s();
     let apart: Vec<f64> = run.motion.slope.iter().zip(made).map(|(recorded, made)| recorded - made).collect();
     let lasting = |at: &f64| {
         let from = time_s.partition_point(|time| *time < at - AROUND_S);
@@ -134,6 +139,36 @@ fn accelerated_m_s2(run: &Recorded) -> Vec<f64> {
         if near.is_empty() { 0.0 } else { median(&near) }
     };
     made.iter().zip(time_s).map(|(made, at)| made + lasting(at)).collect()
+}
+
+/// What a force may be made of beside a measured one, sample by sample of every run [m/s²]: the acceleration as that force makes it or as
+/// the speed has it, whichever is less, and none where they do not agree on its sign. Where a speed is held the first is the mismatch
+/// itself, and the second where a force is. None where any run knows no force.
+pub fn agreed_m_s2(case: &Case) -> Option<Vec<Vec<f64>>> {
+    let of_run = |run: &Recorded| {
+        let made =
+            local_fit(run.measured.trace.time_s(), &run.acceleration_m_s2, run.measured.how.smoothing_s);
+        let least = |(made, recorded): (&f64, &f64)| {
+            if made * recorded > 0.0 { made.signum() * made.abs().min(recorded.abs()) } else { 0.0 }
+        };
+        made.value.iter().zip(&run.motion.slope).map(least).collect()
+    };
+    let forced = case.runs.iter().all(|run| run.force_is_known() && run.forward().is_some());
+    forced.then(|| case.runs.iter().map(of_run).collect())
+}
+
+/// Acceleration that the recorded forces make with a law that hangs on it [m/s²], of what that says sample by sample of every run,
+/// against the motion [N].
+pub fn moved_m_s2(case: &Case, law_n: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let of_run = |(run, law_n): (&Recorded, &Vec<f64>)| {
+        let mass_kg = &case.nominal[run.number].effective_mass_kg;
+        let with = |(index, made): (usize, &f64)| {
+            made - run.motion.value[index].signum() * law_n[index] / mass_kg[index]
+        };
+        let made: Vec<f64> = run.acceleration_m_s2.iter().enumerate().map(with).collect();
+        as_it_lasts_m_s2(run, &made)
+    };
+    case.runs.iter().zip(law_n).map(of_run).collect()
 }
 
 /// Whether courses point to more than one direction and its opposite: of those a heading says no more than which of the two it is.

@@ -37,6 +37,8 @@ const BEYOND_CHANCE: f64 = 100.0;
 const SHARED: f64 = 1.2;
 /// A consumer that may take any course is not told by a formula beyond so many rows, nor is one looked for in the place of each cause.
 const LONG_ROWS: usize = 8_000;
+/// Rounds in which a law of the acceleration is made anew by the one that it makes.
+const ROUNDS_OF_ITSELF: usize = 3;
 /// Where what lasts of the noise is less than this share of that of the sensors, nothing is left that another law could say better.
 const WANDERS: f64 = 0.1;
 /// What acts on the motion.
@@ -192,15 +194,19 @@ fn candidates(
             let with = |part: Part| start.iter().cloned().chain([part]).collect();
             candidates.extend(std::iter::once(part).chain(listed).map(with));
         }
-        // Once more with the noise that is left then: what was fitted to the whole mismatch hides slow laws.
-        let state = State { case, system, pool, fit: &case.fit };
+        // Once more with the noise that is left then: what was fitted to the whole mismatch hides slow laws. What hangs on an
+        // acceleration that it makes itself knows that better every time.
         let with = |part: &Part| start.iter().cloned().chain([part.clone()]).collect::<Vec<Part>>();
-        if let Some(settled) = state.settle(&with(&part), &found.stand.noises)
-            && (rows <= MANY_ROWS || worth(&settled) > worth(&found.stand))
-            && let Some(better) = first_sound(laws(case, system, pool, &start, &settled, sought)?, sought)
-        {
-            law = better;
-            part = add(case, system, pool, &law, sought);
+        for _ in 0..if sought.hangs(&law) { ROUNDS_OF_ITSELF } else { 1 } {
+            let state = State { case, system, pool, fit: &case.fit };
+            if let Some(settled) = state.settle(&with(&part), &found.stand.noises)
+                && (rows <= MANY_ROWS || worth(&settled) > worth(&found.stand))
+                && let moved = sought.moved_by(case, &law)
+                && let Some(better) = first_sound(laws(case, system, pool, &start, &settled, &moved)?, sought)
+            {
+                law = better;
+                part = add(case, system, pool, &law, sought);
+            }
         }
         candidates.push(with(&part));
         candidates.push(vec![part]);

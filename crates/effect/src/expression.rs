@@ -4,7 +4,8 @@
 //!
 //! Source: the author of the scenario; empirical. Notation and units: `expression/names.rs` and `expression/units.rs`.
 //! A formula remembers how far the vehicle came since the run began, whether each of its switches is on, and what follows a value late
-//! (dy/dt = (u − y)/τ); it does not know the force at the wheels, of which a share may be lost. Units are checked
+//! (dy/dt = (u − y)/τ). A force may name the acceleration that it makes itself, as that of an overrun brake does, and not the force of
+//! the drive, of which a share may be lost. Units are checked
 //! when it is read: sums and comparisons need one unit, functions pure numbers, and the whole has to come out in newtons or
 //! watts, or as the pure number that a share is.
 //! Where a formula has no finite value the action has none either, nothing is clamped: a force stops the simulation, a
@@ -28,10 +29,11 @@ use dimension::Dimension;
 use fault::Fault;
 use headland_plugin::{Action, Card, Effect, Plugin, Refusal, Situation, State, parameter};
 use headland_units::parse_unit;
-use names::{DRIVE, LAGS, WAY_STATE};
+use names::{ACCELERATION, DRIVE, LAGS, WAY_STATE};
 use parser::compile;
 use program::Program;
 use serde::Deserialize;
+use std::ops::Range;
 use std::path::Path;
 
 /// Formulas of up to five of the things that an effect can do.
@@ -50,9 +52,12 @@ pub struct Expression {
     shaft_power: Option<String>,
     #[serde(default)]
     constants: Constants,
-    /// Whether a power names the acceleration.
+    /// Whether it names what forces make,
     #[serde(skip)]
     follows: bool,
+    /// and whether a force names the acceleration.
+    #[serde(skip)]
+    moved: bool,
     #[serde(skip)]
     follows_drive: bool,
     /// Names of what is remembered.
@@ -84,7 +89,7 @@ impl Plugin for Expression {
         source: "the author of the scenario; empirical",
         validity: "units have to fit (a factor whose unit no name can say is written as quotients: p_w * (F_drive / f_n)^2); comparisons are 1 or 0; latched(u, on, off) is a switch that goes on at one value of u and off at another; lagged(u, τ) follows u with the time constant τ, settled when the run begins; way is the distance \
                    driven since the run began; slope is the sine, N = m g cos θ the normal load, the cross \
-                   wind comes from the right; oil_temperature and tyre_pressure have to be recorded, state_of_charge where the driveline has no battery; powers alone may name the acceleration and engine_speed, which forces make, powers and loss_share F_drive, the force of the drive before that loss; a force that is not finite stops the simulation, \
+                   wind comes from the right; oil_temperature and tyre_pressure have to be recorded, state_of_charge where the driveline has no battery; of what forces make powers may name all, resistance and force the acceleration (one is sought that the forces make which it makes), loss_share F_drive, the force of the drive before that loss; a force that is not finite stops the simulation, \
                    such a power leaves the drive without any",
         parameters: &[
             parameter(
@@ -134,17 +139,21 @@ impl Plugin for Expression {
                 let found = format!("\"{}\" in {}", Fault::quote(text, 0..text.len()), compiled.dimension);
                 return Err(refuse(name, &found, &format!("a formula in {unit}")));
             }
-            self.follows_drive |=
-                name == LOSS && compiled.made.iter().any(|span| text[span.clone()] == *DRIVE);
-            // What is lost of the force of the drive is known as soon as that force is.
-            let mut unknown = compiled
-                .made
-                .iter()
-                .filter(|span| unit != "W" && !(name == LOSS && text[(*span).clone()] == *DRIVE));
-            if let Some(named) = unknown.next() {
-                let found = format!("`{}` in what makes it", Fault::quote(text, named.clone()));
+            // An acceleration is found that the forces make which hang on it, and what is lost of a force with that force.
+            let agrees = match unit {
+                "N" => Some(ACCELERATION),
+                "1" => Some(DRIVE),
+                _ => None,
+            };
+            let named = |span: &&Range<usize>| Some(&text[(*span).clone()]) == agrees;
+            let mut unknown = compiled.made.iter().filter(|span| unit != "W" && !named(span));
+            if let Some(unknown) = unknown.next() {
+                let found = format!("`{}` in what makes it", Fault::quote(text, unknown.clone()));
                 return Err(refuse(name, &found, "a formula of what makes it; powers may name it"));
             }
+            let agrees = compiled.made.iter().any(|span| named(&span));
+            self.follows_drive |= unit == "1" && agrees;
+            self.moved |= unit == "N" && agrees;
             self.follows |= !compiled.made.is_empty();
             for (used, uses) in used.iter_mut().zip(compiled.uses) {
                 *used |= uses;
@@ -182,6 +191,10 @@ fn share(value: f64) -> f64 {
 impl Effect for Expression {
     fn follows_acceleration(&self) -> bool {
         self.follows
+    }
+
+    fn moved_by_acceleration(&self) -> bool {
+        self.moved
     }
 
     fn follows_drive(&self) -> bool {

@@ -57,9 +57,14 @@ pub trait Effect: Debug + Send + Sync {
     /// an effect adds must not depend on them. The force at the wheels is not known yet, but to an effect that follows it.
     fn act(&self, at: &Situation, states: &[f64], rates: &mut [f64]) -> Action;
 
-    /// Whether its powers hang on `at.acceleration_m_s2`: it is asked once more then, when forces have made it. Its forces
-    /// must not hang on it.
+    /// Whether its powers hang on `at.acceleration_m_s2`: it is asked once more then, when forces have made it.
     fn follows_acceleration(&self) -> bool {
+        false
+    }
+
+    /// Whether its forces do, as those of an overrun brake: it is asked again and again then, until the acceleration that the forces
+    /// make is the one that it was told. Such an effect follows the acceleration as well.
+    fn moved_by_acceleration(&self) -> bool {
         false
     }
 

@@ -12,13 +12,14 @@
 )]
 
 use crate::Model;
+use crate::agreement::Agreement;
 use crate::deciding::Deciding;
 use crate::ledger::{
     AIR, AUXILIARY, BRAKES, DRAWBAR, FIRST_LOSS, HYDRAULICS, PTO, SLOPE, SOIL, SOURCE, Slots,
 };
 use crate::model::Layout;
 use crate::wheels::WheelScratch;
-use headland_plugin::{Action, Air, Delivery, Demand, MAX_LOSSES, Mode, Situation};
+use headland_plugin::{Action, Air, Delivery, Demand, Effect, MAX_LOSSES, Mode, Situation};
 
 /// What the driver, or the recording, wants at this instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,9 +67,9 @@ pub(crate) struct Given {
 
 /// What the forces make, for powers that follow it.
 #[derive(Clone, Copy, Debug, Default)]
-struct Made {
-    acceleration_m_s2: f64,
-    tractive_force_n: f64,
+pub(crate) struct Made {
+    pub acceleration_m_s2: f64,
+    pub tractive_force_n: f64,
     engine_speed_rad_s: Option<f64>,
 }
 
@@ -83,11 +84,6 @@ impl Made {
         }
     }
 }
-
-/// A loss that hangs on the force of the drive, and the force that it asks of the drive, agree within this share of it; each round
-/// brings them closer by about the share that is lost.
-const AGREED: f64 = 1e-9;
-const MOST_ROUNDS: usize = 20;
 
 /// Everything that is known at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -278,17 +274,23 @@ impl Model {
         scratch: &mut Scratch,
     ) -> Instant {
         let at = (point, command, given);
-        let follows = self.effects.iter().any(|effect| effect.plugin.follows_acceleration());
-        let by_drive = self.effects.iter().any(|effect| effect.plugin.follows_drive());
+        let any =
+            |follows: fn(&dyn Effect) -> bool| self.effects.iter().any(|effect| follows(&*effect.plugin));
+        let follows = any(|effect| effect.follows_acceleration());
+        let by_acceleration = follows && any(|effect| effect.moved_by_acceleration());
+        let by_drive = any(|effect| effect.follows_drive());
         let mut made = Made::default();
-        for _ in 0..if by_drive { MOST_ROUNDS } else { usize::from(follows) } {
-            let before_n = made.tractive_force_n;
+        if by_acceleration || by_drive {
+            let mut agreement = Agreement::new(by_acceleration);
+            while let Some(supposed) = agreement.to_ask() {
+                let found = self
+                    .balance_at::<false, WHOLE>(at, supposed, layout, slots, states, rates, powers, scratch);
+                made = agreement.answered(Made::of(&found));
+            }
+        } else if follows {
             let first =
                 self.balance_at::<false, WHOLE>(at, made, layout, slots, states, rates, powers, scratch);
             made = Made::of(&first);
-            if (made.tractive_force_n - before_n).abs() <= AGREED * before_n.abs() {
-                break;
-            }
         }
         self.balance_at::<DECIDES, WHOLE>(at, made, layout, slots, states, rates, powers, scratch)
     }

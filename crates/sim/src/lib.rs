@@ -4,6 +4,7 @@
 //! Three ways to drive it: a [`cycle`](simulate) of phases with a driver, coasting, and a [`replay`] of recorded inputs.
 //! It knows no plugin by name and reads no file.
 
+mod agreement;
 #[cfg(test)]
 mod axle_tests;
 mod axles;

@@ -4,7 +4,7 @@
 
 use crate::shape::{Factor, Shape};
 use crate::term::Term;
-use crate::variable::{ACCELERATION, Checked, DRIVE, Kind, PRESSURE};
+use crate::variable::{ACCELERATION, Checked, DRIVE, Enters, Kind, PRESSURE};
 
 /// Powers of a size. Sources of the halves: rolling in soil and flow through gaps have such exponents.
 const POWERS: [f64; 5] = [0.5, 1.0, 1.5, 2.0, 3.0];
@@ -147,9 +147,10 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
             edges(&mut all);
             latches(&mut all);
         }
+        Kind::Signed if of.enters == Enters::Bent => all.extend(bent(of, index)),
         Kind::Signed => {
             all.extend([0.5, 1.0, 2.0].map(|p| make(Shape::Power(p), of.round_size(), 0.0)));
-            if of.by_size {
+            if of.enters == Enters::BySize {
                 all.extend(beyond(of, index));
                 return all;
             }
@@ -205,6 +206,18 @@ fn beyond(of: &Checked, index: usize) -> Vec<Factor> {
     if of.known.name == DRIVE { each.map(from).collect() } else { Vec::new() }
 }
 
+/// What bends: on one side of a value alone that lies on that side of nought, and what turns with the sign and saturates.
+fn bent(of: &Checked, index: usize) -> Vec<Factor> {
+    let make = |shape, scale, centre| Factor { variable: index, shape, scale, centre };
+    let centres = CENTRES.map(|share| of.low + share * of.spread());
+    let one_sided = centres.into_iter().map(|centre| {
+        make(if centre > 0.0 { Shape::Above(1) } else { Shape::Below(1) }, of.round_size(), centre)
+    });
+    let turns =
+        SCALES.into_iter().filter(|_| of.negative).map(|share| make(Shape::Tanh, share * of.size(), 0.0));
+    one_sided.chain(turns).collect()
+}
+
 /// What one variable can be beside another.
 fn short(variables: &[Checked], index: usize) -> Vec<Factor> {
     let of = &variables[index];
@@ -240,9 +253,10 @@ fn short(variables: &[Checked], index: usize) -> Vec<Factor> {
             all.extend([Shape::Above(1), Shape::Below(1)].map(|shape| make(shape, of.round_size(), at(0.5))));
             all.extend([Shape::Step, Shape::StepDown].map(|step| make(step, 0.05 * of.spread(), at(0.5))));
         }
+        Kind::Signed if of.enters == Enters::Bent => {}
         Kind::Signed => {
             all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
-            if of.negative && !of.by_size {
+            if of.negative && of.enters != Enters::BySize {
                 all.push(make(Shape::SignedPower(1.0), of.round_size(), 0.0));
                 // One side alone: a wheel that rubs in bends one way.
                 all.extend([Shape::Above(1), Shape::Below(1)].map(|shape| make(shape, of.round_size(), 0.0)));
@@ -361,15 +375,15 @@ mod tests {
     #[test]
     fn what_enters_by_its_size_does_so_whichever_sign_it_has() {
         let runs = vec![vec![-1.0, 0.4, 2.0, -0.3]];
-        let variable = |by_size| Variable {
+        let variable = |enters| Variable {
             name: "acceleration".to_owned(),
             unit: "m/s²".to_owned(),
             runs: runs.clone(),
             finest: 0.0,
-            by_size,
+            enters,
         };
-        let values = |by_size: bool| -> Vec<(f64, f64)> {
-            let variables = [variable(by_size)];
+        let values = |enters: Enters| -> Vec<(f64, f64)> {
+            let variables = [variable(enters)];
             let times_s = [vec![0.0, 1.0, 2.0, 3.0]];
             let checked = crate::variable::check(&variables, &times_s, &[true], Target::Power).unwrap();
             let factors = full(&checked, 0);
@@ -381,8 +395,11 @@ mod tests {
                 })
                 .collect()
         };
-        assert!(values(true).len() > 2 && values(true).iter().all(|(ahead, back)| ahead == back));
-        assert!(values(false).iter().any(|(ahead, back)| ahead != back));
+        assert!(
+            values(Enters::BySize).len() > 2
+                && values(Enters::BySize).iter().all(|(ahead, back)| ahead == back)
+        );
+        assert!(values(Enters::Freely).iter().any(|(ahead, back)| ahead != back));
     }
 
     /// The effect checks every unit of its formula, so what it reads has units that fit.
@@ -395,7 +412,7 @@ mod tests {
                 unit: unit.to_owned(),
                 runs: vec![situations.iter().map(|at| value(name, at)).collect()],
                 finest: 0.0,
-                by_size: false,
+                enters: Enters::Freely,
             })
             .collect();
         let residual = vec![vec![0.0; situations.len()]];

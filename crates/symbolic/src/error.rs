@@ -5,7 +5,7 @@
 pub enum SymbolicError {
     /// A variable that no formula may name: unknown to formulas, or made of what is to be explained.
     #[error(
-        "`{name}` may not stand in a law; known: {}; what is made of the target itself, as a force or an acceleration, \
+        "`{name}` may not stand in a law; known: {}; what is made of the target itself, as a force, \
          would reproduce it and explain nothing",
         known.join(" ")
     )]
@@ -14,6 +14,14 @@ pub enum SymbolicError {
         name: String,
         /// What may stand in a law.
         known: Vec<&'static str>,
+    },
+    /// A variable that may not enter in proportion, and is offered so.
+    #[error(
+        "`{name}` enters the law of a force by what bends alone: in proportion to it that would reproduce itself"
+    )]
+    Proportional {
+        /// The variable.
+        name: String,
     },
     /// A variable that is offered twice.
     #[error("`{name}` is offered twice")]

@@ -214,12 +214,14 @@ impl Hunt<'_> {
         let gains = self.screen.gains(&basis, &left);
         let best = gains.iter().copied().fold(0.0, f64::max);
         let peaks = self.screen.peaks(&gains, peaks);
+        let bends = |term: &Term| term.bends(&self.bench.variables);
+        let bent = law.terms.iter().any(bends);
         let mut all: Vec<(f64, Term)> = gains
             .iter()
             .zip(&self.screen.terms)
             .enumerate()
-            // Of the waves only peaks are starts.
-            .filter(|(index, (_, term))| !term.is_wave() || peaks.contains(index))
+            // Of the waves only peaks are starts, and two that bend are in proportion to what each of them may not be.
+            .filter(|(index, (_, term))| (!term.is_wave() || peaks.contains(index)) && !(bent && bends(term)))
             .map(|(_, (gain, term))| (*gain, term.clone()))
             .collect();
         let modulated: Vec<Term> = peaks

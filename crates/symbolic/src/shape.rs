@@ -4,7 +4,7 @@
 
 use crate::lag::lagged;
 use crate::latch::latched;
-use crate::variable::{Checked, DRIVE, Kind};
+use crate::variable::{Checked, DRIVE, Enters, Kind};
 use std::f64::consts::TAU;
 
 /// A function of a variable u with a scale s and a centre c.
@@ -141,7 +141,7 @@ fn takes_size(shape: Shape, of: &Checked) -> bool {
         Shape::Decay | Shape::Rise | Shape::Latch => both,
         Shape::Lag(p, _) => both && p % 2 == 1,
         Shape::Tanh => lost && !of.negative,
-        Shape::Above(_) => of.by_size,
+        Shape::Above(_) => of.enters == Enters::BySize,
         _ => false,
     }
 }
@@ -296,7 +296,12 @@ impl Factor {
             Free::Centre => {
                 let nought = matches!(self.shape, Shape::From | Shape::Under);
                 let (low, high) = if nought { NOUGHTS } else { CENTRES };
-                self.centre = of.low + of.spread() * inner.clamp(low, high);
+                let centre = of.low + of.spread() * inner.clamp(low, high);
+                self.centre = match self.shape {
+                    Shape::Above(_) if of.enters == Enters::Bent => centre.max(0.0),
+                    Shape::Below(_) if of.enters == Enters::Bent => centre.min(0.0),
+                    _ => centre,
+                };
             }
             Free::Power => self.shape = Shape::FreePower(inner.clamp(POWERS.0, POWERS.1)),
             Free::Level => self.shape = Shape::Pulse(inner.clamp(-MOST_LEVEL, MOST_LEVEL)),

@@ -1,7 +1,7 @@
 //! A term of a law: an amplitude in the unit of the target times shapes that are pure numbers.
 
 use crate::shape::{Factor, Free, Shape};
-use crate::variable::Checked;
+use crate::variable::{Checked, Enters};
 
 /// One or two factors; the amplitude is linear and not held here.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +47,11 @@ impl Term {
             Some(other)
         };
         (0..self.factors.len()).filter_map(of).collect()
+    }
+
+    /// Whether a variable is in it that enters by what bends alone.
+    pub fn bends(&self, variables: &[Checked]) -> bool {
+        self.factors.iter().any(|factor| variables[factor.variable].enters == Enters::Bent)
     }
 
     /// How many linear columns it is.

@@ -1,7 +1,8 @@
 //! What may stand in a law, and in which unit.
 //!
 //! The names are those that the effect `expression` knows, and no others: what is made of the target itself (a measured
-//! force; an acceleration, where a force is sought) would reproduce the residual as an identity and is refused by its name.
+//! force; where a force is sought, whatever goes in proportion to an acceleration) would reproduce the residual as an identity
+//! and is refused.
 
 use crate::SymbolicError;
 use crate::problem::Target;
@@ -20,8 +21,20 @@ pub struct Variable {
     /// The finest structure that the rows can show, in its unit: shorter waves would only be seen by their beat with the
     /// rows; 0 where the samples themselves are the limit.
     pub finest: f64,
-    /// Whether it enters by its size alone, whichever sign it has: what goes with its sign is somebody else's.
-    pub by_size: bool,
+    /// How it may enter.
+    pub enters: Enters,
+}
+
+/// What a variable is kept from, because that is somebody else's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Enters {
+    /// Nothing.
+    #[default]
+    Freely,
+    /// What goes with its sign: it enters by its size, whichever sign it has.
+    BySize,
+    /// What is in proportion to it: it enters by what bends alone, and beside no other variable.
+    Bent,
 }
 
 /// How a variable may enter.
@@ -61,8 +74,7 @@ const fn known(name: &'static str, unit: &'static str, ending: &'static str, kin
     Known { name, unit, value_ending: ending, scale_ending: ending, kind }
 }
 
-/// What forces make: it may stand in the law of a power and in none of a force, where it would reproduce the residual as an
-/// identity.
+/// What forces make: in the law of a force it stands by what bends alone, since in proportion to it the residual is an identity.
 pub(crate) const ACCELERATION: &str = "acceleration";
 
 /// How fast the engine turns: what a force asks of it tells that, so that it may stand in the law of a power alone.
@@ -117,8 +129,8 @@ pub(crate) struct Checked<'a> {
     pub high: f64,
     /// Whether any value is negative.
     pub negative: bool,
-    /// Whether it enters by its size alone.
-    pub by_size: bool,
+    /// How it may enter.
+    pub enters: Enters,
     /// Median of the absolute steps between samples that are not zero.
     pub step: f64,
     /// The finest structure that the rows can show.
@@ -182,9 +194,12 @@ pub(crate) fn check<'a>(
 ) -> Result<Vec<Checked<'a>>, SymbolicError> {
     /// A smaller share of the greatest value is rounding.
     const LEAST_SPREAD: f64 = 1e-9;
-    let allowed = |known: &&Known| {
-        target != Target::Force || ![ACCELERATION, ENGINE_SPEED, DRIVE].contains(&known.name)
-    };
+    let of_forces = target == Target::Force;
+    let allowed = |known: &&Known| !of_forces || ![ENGINE_SPEED, DRIVE].contains(&known.name);
+    let bends = |variable: &&Variable| of_forces && variable.name == ACCELERATION;
+    if let Some(variable) = variables.iter().find(|one| bends(one) && one.enters != Enters::Bent) {
+        return Err(SymbolicError::Proportional { name: variable.name.clone() });
+    }
     let mut all: Vec<Checked<'a>> = Vec::new();
     let mut names: Vec<&str> = Vec::new();
     for variable in variables {
@@ -230,9 +245,9 @@ pub(crate) fn check<'a>(
         let negative = variable.runs.iter().flatten().any(|value| *value < 0.0);
         let borrowed = |runs: &'a [Vec<f64>]| runs.iter().map(|run| Cow::Borrowed(run.as_slice())).collect();
         let (runs, finest) = (variable.runs.as_slice(), variable.finest);
-        let (seen, seen_s, by_size) = (borrowed(runs), borrowed(times_s), variable.by_size);
+        let (seen, seen_s, enters) = (borrowed(runs), borrowed(times_s), variable.enters);
         let checked =
-            Checked { known, runs, times_s, seen, seen_s, low, high, negative, by_size, step, finest };
+            Checked { known, runs, times_s, seen, seen_s, low, high, negative, enters, step, finest };
         if checked.spread() > LEAST_SPREAD * checked.size() {
             all.push(checked);
         }
@@ -252,7 +267,7 @@ mod tests {
             unit: unit.to_owned(),
             runs: vec![vec![0.0, 1.0, 3.0]],
             finest: 0.0,
-            by_size: false,
+            enters: Enters::Freely,
         }
     }
 

@@ -15,11 +15,10 @@ const fn variable(name: &'static str, unit: &'static str, of: fn(&Situation) -> 
     Variable { name, unit, of }
 }
 
-/// Those that only a power may name, but for the force of the drive in what is lost of it: the acceleration, which forces make, and the force of the drive and the speed of the engine,
-/// which are not known before them.
+/// What forces make of what is asked, and is not known before them: a power may name all of it, a force the acceleration, and what is
+/// lost of the force of the drive that force.
 pub(super) const MADE: [&str; 3] = [ACCELERATION, DRIVE, ENGINE];
-const ACCELERATION: &str = "acceleration";
-/// The force of the drive, which what is lost of it may name as well.
+pub(super) const ACCELERATION: &str = "acceleration";
 pub(super) const DRIVE: &str = "F_drive";
 const ENGINE: &str = "engine_speed";
 

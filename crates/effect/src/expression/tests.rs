@@ -241,7 +241,7 @@ fn a_value_that_does_not_exist_is_not_made_up() {
 }
 
 #[test]
-fn a_power_may_name_the_acceleration_and_a_force_may_not() {
+fn of_what_forces_make_each_formula_names_what_can_be_found_with_it() {
     let power = "(auxiliary_power: \"k_kg * abs(acceleration) * v\", constants: {\"k_kg\": 100.0})";
     assert!((act::<Expression>(power, &situation()).auxiliary_power_w - 700.0).abs() < 1e-9);
     assert!(build::<Expression>(power).unwrap().follows_acceleration());
@@ -256,12 +256,20 @@ fn a_power_may_name_the_acceleration_and_a_force_may_not() {
     assert!(!build::<Expression>(copper).unwrap().follows_drive());
     let jerky = "(loss_share: \"abs(F_drive) / f_n * acceleration / g\", constants: {\"f_n\": 20000.0})";
     assert!(build::<Expression>(jerky).unwrap_err().contains("`acceleration` in what makes it"));
-    let force = "(force: \"k_kg * acceleration\", constants: {\"k_kg\": 5.0})";
-    let message = build::<Expression>(force).unwrap_err();
-    assert!(
-        message.contains("`acceleration` in what makes it") && message.contains("powers may name it"),
-        "{message}"
-    );
+    let overrun = "(resistance: \"m_kg * max(-acceleration - a_m_s2, 0)\", constants: {\"m_kg\": 5000.0, \"a_m_s2\": 0.2})";
+    let slowing = Situation { acceleration_m_s2: -0.7, ..situation() };
+    assert!((act::<Expression>(overrun, &slowing).resistance_n - 2500.0).abs() < 1e-9);
+    let brake = build::<Expression>(overrun).unwrap();
+    assert!(brake.moved_by_acceleration() && brake.follows_acceleration() && !brake.follows_drive());
+    assert!(!build::<Expression>(power).unwrap().moved_by_acceleration());
+    for (name, text) in
+        [("F_drive", "f_n * F_drive / f_n"), ("engine_speed", "f_n * engine_speed / engine_speed")]
+    {
+        let message =
+            build::<Expression>(&format!("(force: \"{text}\", constants: {{\"f_n\": 5.0}})")).unwrap_err();
+        let told = format!("`{name}` in what makes it");
+        assert!(message.contains(&told) && message.contains("powers may name it"), "{message}");
+    }
 }
 
 /// On at 4 m/s, off at 2 m/s, whatever lies between: and the other way round where `on` is the lower one. A switch of its own for each.

@@ -3,7 +3,7 @@
 //! Laws are closures over the samples; nothing here knows the terms that a search is made of.
 #![allow(dead_code, reason = "each test and the example use a part")]
 
-use headland_symbolic::{Nuisance, Problem, Rows, Target, Variable};
+use headland_symbolic::{Enters, Nuisance, Problem, Rows, Target, Variable};
 use std::f64::consts::{PI, TAU};
 
 /// Numbers that repeat: the generator SplitMix64 (Steele, Lea and Flood, OOPSLA 2014).
@@ -211,7 +211,7 @@ impl Plant {
             unit: unit.to_owned(),
             runs: self.runs.iter().map(|run| run.iter().map(of).collect()).collect(),
             finest: 0.0,
-            by_size: false,
+            enters: Enters::Freely,
         };
         vec![
             one("v", "m/s", |at| at.v),

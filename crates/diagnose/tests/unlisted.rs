@@ -758,6 +758,28 @@ fn a_drag_in_short_bends_one_way_is_found() {
     assert!(law.equation.contains("max("), "{}", law.equation);
 }
 
+/// The overrun brake of a trailer pushes back where the vehicle slows down by more than a little: a force that makes the acceleration
+/// which it goes by. A mass acts to either side.
+#[test]
+fn an_overrun_brake_is_found_by_the_acceleration_that_it_makes() {
+    /// Force for each m/s² [kg], and where it begins [m/s²].
+    const BRAKE_KG: f64 = 4700.0;
+    const BEYOND_M_S2: f64 = 0.17;
+    let brake = format!(
+        "expression(resistance: \"m_kg * max(-acceleration - a_m_s2, 0)\", \
+         constants: {{\"m_kg\": {BRAKE_KG:?}, \"a_m_s2\": {BEYOND_M_S2:?}}})"
+    );
+    let found = found(&recorded(0.069, &brake), &Options::default()).unwrap();
+    let said = &found.diagnosis;
+    assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);
+    let law = &said.findings[0];
+    assert!(law.equation.contains("acceleration") && law.equation.contains("max("), "{}", law.equation);
+    let value = |name: &str| law.parameters.iter().find(|one| one.name == name).unwrap().value;
+    let slope_kg = value("a1_n") / value("acceleration2_m_s2");
+    assert!((slope_kg / BRAKE_KG - 1.0).abs() < 0.1, "{slope_kg}: {}", law.equation);
+    assert!((value("acceleration1_m_s2") + BEYOND_M_S2).abs() < 0.04, "{}", law.equation);
+}
+
 /// Oil that was recorded to warm up thins: a drag by its temperature, which no clock and no start says.
 #[test]
 fn oil_that_was_recorded_drags_by_its_temperature() {

@@ -70,7 +70,7 @@ pub(crate) struct Given {
 pub(crate) struct Made {
     pub acceleration_m_s2: f64,
     pub tractive_force_n: f64,
-    engine_speed_rad_s: Option<f64>,
+    pub engine_speed_rad_s: Option<f64>,
 }
 
 impl Made {

@@ -55,6 +55,28 @@ impl Effect for Chafes {
     }
 }
 
+/// The overrun brake of a trailer: so many kilograms of what it slows down by beyond a threshold.
+#[derive(Debug)]
+struct Overruns {
+    mass_kg: f64,
+    beyond_m_s2: f64,
+}
+
+impl Effect for Overruns {
+    fn act(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Action {
+        let slowing_m_s2 = (-at.acceleration_m_s2 - self.beyond_m_s2).max(0.0);
+        Action { resistance_n: self.mass_kg * slowing_m_s2, ..Action::default() }
+    }
+
+    fn follows_acceleration(&self) -> bool {
+        true
+    }
+
+    fn moved_by_acceleration(&self) -> bool {
+        true
+    }
+}
+
 #[derive(Debug)]
 struct Level;
 
@@ -198,6 +220,27 @@ fn a_share_that_hangs_on_the_force_is_asked_for_until_both_agree() {
     let how = by_force();
     let replayed = replay(&chafing(), &outcome.trace, &how).unwrap();
     assert!((last(&replayed, "speed_m_s") - 10.0).abs() < 1e-6);
+}
+
+/// Coasting, m a = −200 N − M (−a − c): a = −(200 N − M c)/(m − M) = −0.267 m/s² with M = 400 kg and c = 0.1 m/s². Slowed down at
+/// 0.5 m/s² the drive has to hold back 500 N less 200 N of the ground and 160 N of the brake.
+#[test]
+fn a_force_that_hangs_on_the_acceleration_is_the_one_that_makes_it() {
+    let overrun = || model(vec![Box::new(Overruns { mass_kg: 400.0, beyond_m_s2: 0.1 })]);
+    let coasted = drive(&overrun(), 10.0, vec![Phase::Coast { until: Until::SpeedBelow(5.0) }]);
+    let slowing_m_s2 = (200.0 - 400.0 * 0.1) / 600.0;
+    assert!((last(&coasted, "acceleration_m_s2") + slowing_m_s2).abs() < 1e-9);
+    assert!((last(&coasted, "effect_0_n") + 400.0 * (slowing_m_s2 - 0.1)).abs() < 1e-5);
+    assert!(coasted.ledger.relative_residual() < 1e-9, "{:?}", coasted.ledger);
+    let slowed = drive(&overrun(), 10.0, vec![Phase::Reach { speed_m_s: 5.0, acceleration_m_s2: 0.5 }]);
+    let middle = slowed.trace.len() / 2;
+    let at_middle = |channel: &str| slowed.trace.get(channel).unwrap()[middle];
+    assert!((at_middle("acceleration_m_s2") + 0.5).abs() < 1e-9);
+    assert!((at_middle("tractive_force_n") + 140.0).abs() < 1e-6, "{}", at_middle("tractive_force_n"));
+    assert!(slowed.ledger.relative_residual() < 1e-9, "{:?}", slowed.ledger);
+    // Driven by that force it slows down so again.
+    let replayed = replay(&overrun(), &slowed.trace, &by_force()).unwrap();
+    assert!((last(&replayed, "speed_m_s") - last(&slowed, "speed_m_s")).abs() < 1e-3);
 }
 
 /// A slip of 200 · 0.0005 = 0.1: the wheels roll at 10 / 0.9 m/s, and 200 · 1.111 = 222.2 W are the effect's.

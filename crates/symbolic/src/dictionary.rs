@@ -402,6 +402,36 @@ mod tests {
         assert!(values(Enters::Freely).iter().any(|(ahead, back)| ahead != back));
     }
 
+    /// On one side of nought alone, and never in proportion from one side to the other.
+    #[test]
+    fn what_bends_says_nothing_of_a_mass() {
+        let variables = [Variable {
+            name: "acceleration".to_owned(),
+            unit: "m/s²".to_owned(),
+            runs: vec![vec![-1.0, 0.4, 2.0, -0.3]],
+            finest: 0.0,
+            enters: Enters::Bent,
+        }];
+        let times_s = [vec![0.0, 1.0, 2.0, 3.0]];
+        let checked = crate::variable::check(&variables, &times_s, &[true], Target::Force).unwrap();
+        let factors = full(&checked, 0);
+        assert!(factors.len() > 5 && short(&checked, 0).is_empty());
+        for mut factor in factors {
+            let of = |factor: &Factor| factor.along(&[-0.9, 0.0, 0.9], &[0.0, 1.0, 2.0], &checked[0]);
+            let [(behind, _), (nought, _), (ahead, _)] = of(&factor)[..] else { panic!() };
+            assert!(
+                nought == 0.0 && (behind == 0.0 || ahead == 0.0 || factor.shape == Shape::Tanh),
+                "{factor:?}"
+            );
+            // The data move a centre no further than nought.
+            if factor.shape.has_centre() {
+                let far = if factor.shape == Shape::Above(1) { -0.1 } else { 1.1 };
+                factor.set_inner(crate::shape::Free::Centre, far, &checked[0]);
+                assert_eq!(factor.centre, 0.0);
+            }
+        }
+    }
+
     /// The effect checks every unit of its formula, so what it reads has units that fit.
     #[test]
     fn every_term_has_units_that_fit_and_runs_with_its_own_numbers() {

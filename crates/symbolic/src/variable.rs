@@ -287,10 +287,21 @@ mod tests {
 
     #[test]
     fn what_is_made_of_the_target_is_refused() {
-        for name in ["a", "force", "dv_dt", "tractive_force_n", "acceleration"] {
+        for name in ["a", "force", "dv_dt", "tractive_force_n", "F_drive"] {
             let error = check(&[variable(name, "N")], NO_TIMES, &[true], Target::Force).unwrap_err();
             assert!(matches!(error, SymbolicError::Unknown { .. }), "{error}");
         }
+    }
+
+    #[test]
+    fn an_acceleration_enters_the_law_of_a_force_by_what_bends_alone() {
+        let of = |enters| [Variable { enters, ..variable("acceleration", "m/s²") }];
+        for enters in [Enters::Freely, Enters::BySize] {
+            let error = check(&of(enters), NO_TIMES, &[true], Target::Force).unwrap_err();
+            assert!(matches!(error, SymbolicError::Proportional { .. }), "{error}");
+            assert!(check(&of(enters), NO_TIMES, &[true], Target::Power).is_ok());
+        }
+        assert!(check(&of(Enters::Bent), NO_TIMES, &[true], Target::Force).is_ok());
     }
 
     #[test]

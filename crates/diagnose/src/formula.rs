@@ -3,7 +3,7 @@
 use crate::balance::Kind;
 use crate::catalogue::Cause;
 use crate::line::Line;
-use crate::nameable::{agreed_m_s2, moved_m_s2, variables};
+use crate::nameable::{agreed_m_s2, moved_m_s2, variables, way_is_place};
 use crate::noise::Whiteners;
 use crate::recorded::Recorded;
 use crate::rows::Row;
@@ -25,8 +25,10 @@ pub struct Sought {
     pub kind: Kind,
     /// What the formula is.
     pub target: Target,
-    /// Whether places were recorded.
-    pub placed: bool,
+    /// Whether places were recorded,
+    placed: bool,
+    /// and whether the way that a run came says them as well.
+    from_one_place: bool,
     /// Whether it may name times and places.
     somewhen: bool,
     /// Force of the drive that a share of it is lost of, sample by sample of every run [N].
@@ -69,6 +71,7 @@ impl Sought {
             kind,
             target,
             placed,
+            from_one_place: placed && way_is_place(case),
             somewhen: true,
             drive_n,
             accelerations_m_s2,
@@ -79,6 +82,11 @@ impl Sought {
     /// The same by a formula that names neither times nor places.
     pub fn anywhen(&self) -> Self {
         Self { somewhen: false, ..self.clone() }
+    }
+
+    /// Whether places were recorded, and whether the way that a run came says them as well.
+    pub fn places(&self) -> (bool, bool) {
+        (self.placed, self.from_one_place)
     }
 
     /// Whether a law of a force hangs on the acceleration that it makes.
@@ -387,6 +395,7 @@ mod tests {
             kind: Kind::Motion,
             target: Target::Share,
             placed: false,
+            from_one_place: false,
             somewhen: true,
             drive_n: vec![force_n.clone()],
             accelerations_m_s2: None,

@@ -25,15 +25,19 @@ fn masses_kg(case: &Case) -> Option<Vec<Vec<f64>>> {
     case.runs.iter().map(of_run).collect()
 }
 
-/// How far every run came since it began, sample by sample, where that does not say where it is as well.
-fn ways_m(case: &Case) -> Option<Vec<Vec<f64>>> {
+/// How far every run came since it began, sample by sample [m].
+fn ways_m(case: &Case) -> Vec<Vec<f64>> {
     let of_run = |run: &Recorded| {
         let speeds: Vec<f64> = run.motion.value.iter().map(|speed| speed.abs()).collect();
         travelled(run.measured.trace.time_s(), &speeds)
     };
-    let ways: Vec<Vec<f64>> = case.runs.iter().map(of_run).collect();
+    case.runs.iter().map(of_run).collect()
+}
+
+/// Whether the way that a run came says where it is as well: all of them began at one place and went on from there.
+pub fn way_is_place(case: &Case) -> bool {
     let places: Vec<f64> = case.runs.iter().flat_map(|run| run.position_m.iter().copied()).collect();
-    leaves(&ways, &places).then_some(ways)
+    !leaves(&ways_m(case), &places)
 }
 
 /// Whether a series of every run leaves a straight line of another that says as much.
@@ -87,6 +91,9 @@ pub fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     // goes with its sign.
     let forced = case.runs.iter().all(Recorded::force_is_known);
     let engine_speed = channel("engine_speed_rad_s").filter(|runs| kind.is_power() && tells_more(case, runs));
+    // Where nobody recorded a place it is the way.
+    let placed = case.runs.iter().any(|run| run.measured.trace.get("position_m").is_some());
+    let ways = (placed || !way_is_place(case)).then(|| ways_m(case));
     let whole = |runs: &Vec<Vec<f64>>| runs.iter().flatten().all(|value| value.is_finite());
     let slope = Some(case.nominal.iter().map(|said| said.sin_slope.clone()).collect());
     let offered: [Offered; 17] = [
@@ -94,7 +101,7 @@ pub fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
         ("acceleration", "m/s²", acceleration),
         ("engine_speed", "rad/s", engine_speed),
         ("x", "m", of(&|run| run.position_m.clone())),
-        ("way", "m", ways_m(case)),
+        ("way", "m", ways),
         ("t", "s", of(&|run| run.measured.trace.time_s().to_vec())),
         ("heading", "rad", channel("heading_rad").filter(|runs| turns(runs))),
         ("kappa", "1/m", channel("curvature_per_m")),

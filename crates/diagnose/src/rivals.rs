@@ -4,6 +4,7 @@ use crate::balance::Kind;
 use crate::catalogue::{Cause, Form, LawText};
 use crate::conclude::Side;
 use crate::gram::Column;
+use crate::nameable::way_is_place;
 use crate::places::in_one_place;
 use crate::search::{Accepted, Beside, Found, OTHER_WORDS, Rival, TOLERANCE, worth};
 use crate::state::{Stand, State};
@@ -82,7 +83,8 @@ impl State<'_> {
     /// however coarse the map.
     fn is_place_told_one_way(&self, own: &Trial, other: &Trial) -> bool {
         let (own, other) = (self.cause(own), self.cause(other));
-        let of_place = own.law.as_ref().is_some_and(LawText::is_of_places);
+        let from_one_place = |law: &LawText| law.is_of_the_way() && way_is_place(self.case);
+        let of_place = own.law.as_ref().is_some_and(|law| law.is_of_places() || from_one_place(law));
         let told = self.system.has(Kind::Parity) || self.case.drives_a_path_both_ways();
         of_place && other.form == Form::OverPosition && !told
     }

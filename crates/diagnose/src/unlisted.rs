@@ -357,7 +357,7 @@ fn first_sound(laws: Vec<Law>, sought: &Sought) -> Option<Law> {
 fn is_sound(law: &Law, sought: &Sought) -> bool {
     let level = law.each.len() > 1 && law.each.iter().any(is_level);
     let known = !is_undetermined(law) && !is_hurried(law) && !level;
-    !is_map(law, sought.target, sought.placed) && known && is_lost(law, sought)
+    !is_map(law, sought.target, sought.places()) && known && is_lost(law, sought)
 }
 
 /// Whether what is lost on a way is lost, and is not all of it.
@@ -369,10 +369,11 @@ fn is_lost(law: &Law, sought: &Sought) -> bool {
 /// with time, beside something else or in several shapes of one. A wave that goes on all the way is none; places where it is on
 /// and others where it is off are patches. Nor is what fades with the way from the start, where nobody recorded places: a tyre or a
 /// tank that a run begins with.
-fn is_map(law: &Law, target: Target, placed: bool) -> bool {
+fn is_map(law: &Law, target: Target, (placed, from_one_place): (bool, bool)) -> bool {
     const WAVE: &str = "sin";
     const FADES: &str = "exp(-x / ";
     const PULSE: &str = " - level";
+    const SETS_IN: &str = "tanh((way - ";
     // In a run that goes once along its way places and times both say where it is.
     let only = |term: &[&str]| match target {
         Target::Power => ["x", "t"].iter().any(|name| !term.is_empty() && term.iter().all(|own| own == name)),
@@ -382,7 +383,9 @@ fn is_map(law: &Law, target: Target, placed: bool) -> bool {
     let patches = law.text.contains(PULSE) && terms.iter().any(|term| term.iter().all(|own| *own == "x"));
     let fades = !placed && law.text.contains(FADES);
     let alone = terms.len() == 1 && (law.names(WAVE) || fades) && !patches;
-    !alone && terms.iter().any(|term| only(term))
+    // What sets in so far from the one place at which all runs begin does so at a place.
+    let sets_in = from_one_place && law.text.contains(SETS_IN);
+    sets_in || !alone && terms.iter().any(|term| only(term))
 }
 
 /// Whether what follows late does so at once, nearly: a speed that is ahead of itself by a moment is an acceleration, which forces make.
@@ -715,7 +718,7 @@ fn with_less(
         .each
         .iter()
         .filter(|term| {
-            !is_map(term, sought.target, sought.placed)
+            !is_map(term, sought.target, sought.places())
                 && is_lost(term, sought)
                 && !is_hurried(term)
                 && !is_level(term)
@@ -935,10 +938,12 @@ mod tests {
 
     #[test]
     fn a_patch_is_a_map_and_what_goes_on_all_the_way_is_none() {
-        let told = |text: &str, target: Target| is_map(&law(text, &[]), target, true);
+        let told = |text: &str, target: Target| is_map(&law(text, &[]), target, (true, false));
         assert!(told("a1_n * exp(-((x - x1_m) / x2_m)^2)", Target::Force));
         let fades = law("a1_n * (1 - exp(-x / x1_m))", &[]);
-        assert!(is_map(&fades, Target::Force, true) && !is_map(&fades, Target::Force, false));
+        assert!(
+            is_map(&fades, Target::Force, (true, false)) && !is_map(&fades, Target::Force, (false, false))
+        );
         assert!(!told("a1_n * sin(6.28 * x / x1_m + phase1_rad)", Target::Force));
         let pulse =
             |of: &str| format!("a1_n * 0.5 * (1 + tanh(20 * (sin(6.28 * ({of} - {of}1) / {of}2) - level1)))");

@@ -140,7 +140,7 @@ fn takes_size(shape: Shape, of: &Checked) -> bool {
         Shape::Saturation | Shape::Hyperbola | Shape::Peak => of.negative || lost,
         Shape::Decay | Shape::Rise | Shape::Latch => both,
         Shape::Lag(p, _) => both && p % 2 == 1,
-        Shape::Tanh => lost && !of.negative,
+        Shape::Tanh => lost && !of.negative || of.enters == Enters::BySize,
         Shape::Above(_) => of.enters == Enters::BySize,
         _ => false,
     }

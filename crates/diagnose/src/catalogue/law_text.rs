@@ -55,9 +55,17 @@ pub struct LawText {
 impl LawText {
     /// Whether it is a law of places alone, as a map is: the way since a run began is none.
     pub fn is_of_places(&self) -> bool {
+        self.depends_on == [PLACE] && !self.names_the_way()
+    }
+
+    /// Whether it hangs on how far a run came, and on nothing else.
+    pub fn is_of_the_way(&self) -> bool {
+        self.depends_on == [PLACE] && self.names_the_way()
+    }
+
+    fn names_the_way(&self) -> bool {
         let word = |letter: char| letter.is_alphanumeric() || letter == '_';
-        let way = self.text.split(|letter| !word(letter)).any(|name| name == WAY);
-        self.depends_on == [PLACE] && !way
+        self.text.split(|letter| !word(letter)).any(|name| name == WAY)
     }
 
     /// Whether a vehicle that is a little elsewhere, or a little slower, may be led somewhere else altogether.

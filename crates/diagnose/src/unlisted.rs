@@ -371,7 +371,7 @@ fn is_lost(law: &Law, sought: &Sought) -> bool {
 /// tank that a run begins with.
 fn is_map(law: &Law, target: Target, (placed, from_one_place): (bool, bool)) -> bool {
     const WAVE: &str = "sin";
-    const FADES: &str = "exp(-x / ";
+    const FADES: [&str; 4] = ["exp(-x / ", "exp(-abs(x) / ", "/ (1 + x / ", "/ (1 + abs(x) / "];
     const PULSE: &str = " - level";
     const SETS_IN: &str = "tanh((way - ";
     // In a run that goes once along its way places and times both say where it is.
@@ -381,11 +381,11 @@ fn is_map(law: &Law, target: Target, (placed, from_one_place): (bool, bool)) -> 
     };
     let terms = law.variables_of_terms();
     let patches = law.text.contains(PULSE) && terms.iter().any(|term| term.iter().all(|own| *own == "x"));
-    let fades = !placed && law.text.contains(FADES);
-    let alone = terms.len() == 1 && (law.names(WAVE) || fades) && !patches;
+    let fades = |text: &str| !placed && FADES.iter().any(|fades| text.contains(fades));
+    let alone = terms.len() == 1 && law.names(WAVE) && !patches;
     // What sets in so far from the one place at which all runs begin does so at a place.
     let sets_in = from_one_place && law.text.contains(SETS_IN);
-    sets_in || !alone && terms.iter().any(|term| only(term))
+    sets_in || !alone && terms.iter().zip(law.texts()).any(|(term, text)| only(term) && !fades(text))
 }
 
 /// Whether what follows late does so at once, nearly: a speed that is ahead of itself by a moment is an acceleration, which forces make.
@@ -943,6 +943,14 @@ mod tests {
         let fades = law("a1_n * (1 - exp(-x / x1_m))", &[]);
         assert!(
             is_map(&fades, Target::Force, (true, false)) && !is_map(&fades, Target::Force, (false, false))
+        );
+        let beside = law("a1_n * (abs(v) / v1_m_s) + a2_n * exp(-abs(x) / x1_m)", &[]);
+        assert!(
+            is_map(&beside, Target::Force, (true, false)) && !is_map(&beside, Target::Force, (false, false))
+        );
+        let sets_in = law("a1_n * 0.5 * (1 + tanh((way - way1_m) / way2_m))", &[]);
+        assert!(
+            is_map(&sets_in, Target::Force, (true, true)) && !is_map(&sets_in, Target::Force, (true, false))
         );
         assert!(!told("a1_n * sin(6.28 * x / x1_m + phase1_rad)", Target::Force));
         let pulse =

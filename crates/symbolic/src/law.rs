@@ -79,7 +79,12 @@ impl Law {
         let of = |term: &str| -> Vec<&'static str> {
             known_variables().map(|(name, _)| name).filter(|name| has_word(term, name)).collect()
         };
-        terms(&self.text).into_iter().map(of).collect()
+        self.texts().into_iter().map(of).collect()
+    }
+
+    /// The text of each of its terms.
+    pub fn texts(&self) -> Vec<&str> {
+        terms(&self.text)
     }
 }
 

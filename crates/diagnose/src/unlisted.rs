@@ -97,10 +97,11 @@ fn among(
     let mut found = found;
     for (kind, target) in sought.iter().copied() {
         // Where no force at the wheels was measured the shaft lacks a force as likely as a consumer, and a formula of watts
-        // would draw the course of a pull.
+        // would draw the course of a pull, but in the place of a consumer's.
         let pulled = found.stand.parts.iter().any(|part| {
             let cause = &case.causes[part.trial.cause];
-            cause.by_run || cause.form == Form::OverTime || part.spread.is_some()
+            let consumes = target != Target::Force && cause.balances.iter().all(|kind| kind.is_power());
+            cause.by_run || !consumes && (cause.form == Form::OverTime || part.spread.is_some())
         });
         if kind == Kind::Shaft && if forced { target == Target::Force } else { pulled } {
             continue;

@@ -93,7 +93,14 @@ pub fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     let engine_speed = channel("engine_speed_rad_s").filter(|runs| kind.is_power() && tells_more(case, runs));
     // Where nobody recorded a place it is the way.
     let placed = case.runs.iter().any(|run| run.measured.trace.get("position_m").is_some());
-    let ways = (placed || !way_is_place(case)).then(|| ways_m(case));
+    let from_one_place = way_is_place(case);
+    let ways = (placed || !from_one_place).then(|| ways_m(case));
+    let enters = |name: &str| match name {
+        "acceleration" if !forced => Enters::BySize,
+        // What fades from the place at which all runs begin does so with the way.
+        "x" if placed && from_one_place => Enters::Within,
+        _ => Enters::Freely,
+    };
     let whole = |runs: &Vec<Vec<f64>>| runs.iter().flatten().all(|value| value.is_finite());
     let slope = Some(case.nominal.iter().map(|said| said.sin_slope.clone()).collect());
     let offered: [Offered; 17] = [
@@ -121,7 +128,7 @@ pub fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
             unit: unit.to_owned(),
             runs: runs.filter(whole)?,
             finest: finest(name),
-            enters: if name == "acceleration" && !forced { Enters::BySize } else { Enters::Freely },
+            enters: enters(name),
         })
     };
     offered.into_iter().filter_map(variable).collect()

@@ -357,7 +357,8 @@ fn first_sound(laws: Vec<Law>, sought: &Sought) -> Option<Law> {
 /// Whether a law draws no map, each of its terms is known, none of several is a level, and what is lost on a way is that.
 fn is_sound(law: &Law, sought: &Sought) -> bool {
     let level = law.each.len() > 1 && law.each.iter().any(is_level);
-    let known = !is_undetermined(law) && !is_hurried(law) && !level;
+    let loose = law.terms > 1 && is_loose(law);
+    let known = !is_undetermined(law) && !loose && !is_hurried(law) && !level;
     !is_map(law, sought.target, sought.places()) && known && is_lost(law, sought)
 }
 
@@ -387,6 +388,21 @@ fn is_map(law: &Law, target: Target, (placed, from_one_place): (bool, bool)) -> 
     // What sets in so far from the one place at which all runs begin does so at a place.
     let sets_in = from_one_place && law.text.contains(SETS_IN);
     sets_in || !alone && terms.iter().zip(law.texts()).any(|(term, text)| only(term) && !fades(text))
+}
+
+/// Whether a shape is as well none of its own: the scale that it bends over may be anything, a straight line or a level among that,
+/// which other terms and free parameters take back.
+fn is_loose(law: &Law) -> bool {
+    let scale = |constant: &headland_symbolic::Constant| {
+        ["tanh(", "exp(-", "(1 + "].iter().any(|shape| {
+            let mut of = law.text.split(shape).skip(1).filter_map(|rest| rest.split(')').next());
+            of.any(|inner| inner.ends_with(&format!("/ {}", constant.name)))
+        })
+    };
+    let loose = |constant: &headland_symbolic::Constant| {
+        constant.sd.is_some_and(|sd| constant.value < crate::refine::HALF_95 * sd)
+    };
+    law.constants.iter().any(|constant| scale(constant) && loose(constant))
 }
 
 /// Whether what follows late does so at once, nearly: a speed that is ahead of itself by a moment is an acceleration, which forces make.

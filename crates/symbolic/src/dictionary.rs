@@ -2,7 +2,7 @@
 //!
 //! The grid only has to lead into the basin of the best constants, which are polished afterwards.
 
-use crate::shape::{Factor, Shape};
+use crate::shape::{Factor, STRAIGHT, Shape};
 use crate::term::Term;
 use crate::variable::{ACCELERATION, Checked, DRIVE, Enters, Kind, PRESSURE};
 
@@ -122,6 +122,7 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
         }
     };
     match of.known.kind {
+        Kind::Coordinate if of.enters == Enters::Within => edges(&mut all),
         Kind::Size | Kind::Coordinate => {
             all.extend(POWERS.map(|p| make(Shape::Power(p), of.round_size(), 0.0)));
             all.extend(FREE_POWERS.map(|p| make(Shape::FreePower(p), of.round_size(), 0.0)));
@@ -207,16 +208,23 @@ fn beyond(of: &Checked, index: usize) -> Vec<Factor> {
     if of.known.name == DRIVE { each.map(from).collect() } else { Vec::new() }
 }
 
-/// What bends: on one side of a value alone that lies on that side of nought, and what turns with the sign and saturates.
+/// What bends: on one side of a value alone that lies on that side of nought, without end or up to a level, and what turns with the
+/// sign and saturates.
 fn bent(of: &Checked, index: usize) -> Vec<Factor> {
     let make = |shape, scale, centre| Factor { variable: index, shape, scale, centre };
     let centres = CENTRES.map(|share| of.low + share * of.spread());
     let one_sided = centres.into_iter().map(|centre| {
         make(if centre > 0.0 { Shape::Above(1) } else { Shape::Below(1) }, of.round_size(), centre)
     });
-    let turns =
-        SCALES.into_iter().filter(|_| of.negative).map(|share| make(Shape::Tanh, share * of.size(), 0.0));
-    one_sided.chain(turns).collect()
+    let width = EDGES[0] * of.spread();
+    let apart = centres.into_iter().filter(|centre| centre.abs() > 2.0 * width);
+    let steps =
+        apart.map(|centre| make(if centre > 0.0 { Shape::Step } else { Shape::StepDown }, width, centre));
+    let turns = SCALES
+        .into_iter()
+        .filter(|share| of.negative && *share < STRAIGHT)
+        .map(|share| make(Shape::Tanh, share * of.size(), 0.0));
+    one_sided.chain(steps).chain(turns).collect()
 }
 
 /// What one variable can be beside another.
@@ -234,8 +242,10 @@ fn short(variables: &[Checked], index: usize) -> Vec<Factor> {
             all.extend([0.25, 0.5, 0.75].map(|share| make(Shape::Bump, 0.12 * of.spread(), at(share))));
         }
         Kind::Coordinate => {
-            all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
-            all.extend([0.07, 0.25, 0.8].map(|share| make(Shape::Decay, share * of.size(), 0.0)));
+            if of.enters != Enters::Within {
+                all.push(make(Shape::Power(1.0), of.round_size(), 0.0));
+                all.extend([0.07, 0.25, 0.8].map(|share| make(Shape::Decay, share * of.size(), 0.0)));
+            }
             all.extend([0.25, 0.5, 0.75].map(|share| make(Shape::Step, 0.03 * of.spread(), at(share))));
             all.extend(
                 [0.15, 0.38, 0.62, 0.85].map(|share| make(Shape::Bump, 0.12 * of.spread(), at(share))),
@@ -426,7 +436,7 @@ mod tests {
             );
             // The data move a centre no further than nought.
             if factor.shape.has_centre() {
-                let far = if factor.shape == Shape::Above(1) { -0.1 } else { 1.1 };
+                let far = if [Shape::Above(1), Shape::Step].contains(&factor.shape) { -0.1 } else { 1.1 };
                 factor.set_inner(crate::shape::Free::Centre, far, &checked[0]);
                 assert_eq!(factor.centre, 0.0);
             }

@@ -72,6 +72,9 @@ pub(crate) enum Free {
     Lag,
 }
 
+/// What turns with the sign of a variable, and saturates beyond this share of its greatest size, is nearly in proportion to it.
+pub(crate) const STRAIGHT: f64 = 0.5;
+
 /// How steeply a pulse goes on and off: within a hundredth of its period.
 const EDGE: f64 = 20.0;
 
@@ -288,9 +291,13 @@ impl Factor {
                 self.scale = (of.spread() / inner.max(FEWEST_CYCLES)).max(of.finest);
             }
             Free::Scale => {
-                let largest = if of.known.kind == Kind::Level { of.spread() } else { of.size() };
+                let largest = match (of.known.kind, of.enters) {
+                    (_, Enters::Bent) => STRAIGHT * of.size(),
+                    (Kind::Level, _) => SCALES.1 * of.spread(),
+                    _ => SCALES.1 * of.size(),
+                };
                 let smallest = (SCALES.0 * of.spread()).max(FINER * of.finest);
-                self.scale = inner.exp().clamp(smallest, (SCALES.1 * largest).max(smallest));
+                self.scale = inner.exp().clamp(smallest, largest.max(smallest));
             }
             Free::Centre if self.shape.repeats() => self.centre = inner * self.scale,
             Free::Centre => {
@@ -298,8 +305,8 @@ impl Factor {
                 let (low, high) = if nought { NOUGHTS } else { CENTRES };
                 let centre = of.low + of.spread() * inner.clamp(low, high);
                 self.centre = match self.shape {
-                    Shape::Above(_) if of.enters == Enters::Bent => centre.max(0.0),
-                    Shape::Below(_) if of.enters == Enters::Bent => centre.min(0.0),
+                    Shape::Above(_) | Shape::Step if of.enters == Enters::Bent => centre.max(0.0),
+                    Shape::Below(_) | Shape::StepDown if of.enters == Enters::Bent => centre.min(0.0),
                     _ => centre,
                 };
             }

@@ -33,6 +33,8 @@ pub enum Enters {
     Freely,
     /// What goes with its sign: it enters by its size, whichever sign it has.
     BySize,
+    /// What goes from its zero on: it enters by what is there within it, or comes again.
+    Within,
     /// What is in proportion to it: it enters by what bends alone, and beside no other variable.
     Bent,
 }

@@ -369,25 +369,27 @@ fn is_lost(law: &Law, sought: &Sought) -> bool {
 
 /// Whether a law draws a map: softer ground and slopes are that by their definition, and so is a consumer that is switched
 /// with time, beside something else or in several shapes of one. A wave that goes on all the way is none; places where it is on
-/// and others where it is off are patches. Nor is what fades with the way from the start, where nobody recorded places: a tyre or a
-/// tank that a run begins with.
+/// and others where it is off are patches. Nor is what fades with the way from the start: a tyre or a tank that a run begins with.
+/// Where nobody recorded places the place is that way, and where all runs begin at one the way says the place.
 fn is_map(law: &Law, target: Target, (placed, from_one_place): (bool, bool)) -> bool {
     const WAVE: &str = "sin";
-    const FADES: [&str; 4] = ["exp(-x / ", "exp(-abs(x) / ", "/ (1 + x / ", "/ (1 + abs(x) / "];
+    const FADES: [&str; 2] = ["exp(-", "/ (1 + "];
     const PULSE: &str = " - level";
-    const SETS_IN: &str = "tanh((way - ";
+    let is_place = |name: &str| name == "x" || from_one_place && name == "way";
     // In a run that goes once along its way places and times both say where it is.
     let only = |term: &[&str]| match target {
         Target::Power => ["x", "t"].iter().any(|name| !term.is_empty() && term.iter().all(|own| own == name)),
-        _ => term.contains(&"x") && term.iter().all(|own| ["x", "t"].contains(own)),
+        _ => term.iter().any(|own| is_place(own)) && term.iter().all(|own| is_place(own) || *own == "t"),
     };
     let terms = law.variables_of_terms();
     let patches = law.text.contains(PULSE) && terms.iter().any(|term| term.iter().all(|own| *own == "x"));
-    let fades = |text: &str| !placed && FADES.iter().any(|fades| text.contains(fades));
+    let way = if placed { "way" } else { "x" };
+    let sizes = [format!("{way} / "), format!("abs({way}) / ")];
+    let fades = |text: &str| {
+        FADES.iter().any(|fades| sizes.iter().any(|size| text.contains(&format!("{fades}{size}"))))
+    };
     let alone = terms.len() == 1 && law.names(WAVE) && !patches;
-    // What sets in so far from the one place at which all runs begin does so at a place.
-    let sets_in = from_one_place && law.text.contains(SETS_IN);
-    sets_in || !alone && terms.iter().zip(law.texts()).any(|(term, text)| only(term) && !fades(text))
+    !alone && terms.iter().zip(law.texts()).any(|(term, text)| only(term) && !fades(text))
 }
 
 /// Whether a shape is as well none of its own: the scale that it bends over may be anything, a straight line or a level among that,
@@ -965,10 +967,16 @@ mod tests {
         assert!(
             is_map(&beside, Target::Force, (true, false)) && !is_map(&beside, Target::Force, (false, false))
         );
-        let sets_in = law("a1_n * 0.5 * (1 + tanh((way - way1_m) / way2_m))", &[]);
-        assert!(
-            is_map(&sets_in, Target::Force, (true, true)) && !is_map(&sets_in, Target::Force, (true, false))
-        );
+        // From one place the way says the place, but for what fades.
+        for (text, map) in [
+            ("a1_n * 0.5 * (1 + tanh((way - way1_m) / way2_m))", true),
+            ("a1_n * (v / v1_m_s) + a2_n * sin(6.28 * way / way1_m + phase2_rad)", true),
+            ("a1_n * (v / v1_m_s) + a2_n * (1 - exp(-way / way1_m))", false),
+        ] {
+            let law = law(text, &[]);
+            assert_eq!(is_map(&law, Target::Force, (true, true)), map, "{text}");
+            assert!(!is_map(&law, Target::Force, (true, false)), "{text}");
+        }
         assert!(!told("a1_n * sin(6.28 * x / x1_m + phase1_rad)", Target::Force));
         let pulse =
             |of: &str| format!("a1_n * 0.5 * (1 + tanh(20 * (sin(6.28 * ({of} - {of}1) / {of}2) - level1)))");

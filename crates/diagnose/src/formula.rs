@@ -386,7 +386,7 @@ fn enough(fit: &[bool], rows: &[Vec<f64>]) -> Vec<bool> {
 mod tests {
     use super::{Sought, enough};
     use crate::balance::Kind;
-    use headland_symbolic::{Enters, Law, Target};
+    use headland_symbolic::{Law, Target};
 
     #[test]
     fn a_loss_that_takes_all_that_a_force_rises_by_answers_with_itself() {

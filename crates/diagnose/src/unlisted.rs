@@ -358,7 +358,8 @@ fn first_sound(laws: Vec<Law>, sought: &Sought) -> Option<Law> {
 fn is_sound(law: &Law, sought: &Sought) -> bool {
     let level = law.each.len() > 1 && law.each.iter().any(is_level);
     let loose = law.terms > 1 && is_loose(law);
-    let known = !is_undetermined(law) && !loose && !is_hurried(law) && !level;
+    let ahead = sought.hangs(law) && drives_ahead(law);
+    let known = !is_undetermined(law) && !loose && !ahead && !is_hurried(law) && !level;
     !is_map(law, sought.target, sought.places()) && known && is_lost(law, sought)
 }
 
@@ -405,6 +406,17 @@ fn is_loose(law: &Law) -> bool {
         constant.sd.is_some_and(|sd| constant.value < crate::refine::HALF_95 * sd)
     };
     law.constants.iter().any(|constant| scale(constant) && loose(constant))
+}
+
+/// Whether a force goes with the acceleration that it makes: beside a mass told too large it takes back what that is too much, and
+/// nothing that resists does.
+fn drives_ahead(law: &Law) -> bool {
+    let amplitudes = || law.constants.iter().filter(|constant| constant.is_amplitude());
+    let ahead = |text: &&str| {
+        let own = amplitudes().find(|constant| text.starts_with(&format!("{} ", constant.name)));
+        own.is_some_and(|own| own.value < 0.0)
+    };
+    law.texts().iter().filter(|text| text.contains("acceleration")).any(ahead)
 }
 
 /// Whether what follows late does so at once, nearly: a speed that is ahead of itself by a moment is an acceleration, which forces make.
@@ -953,6 +965,30 @@ mod tests {
         let [from_s, to_s] = pulsed(72.0).expect("it is on once");
         assert!((from_s - 8.0).abs() < 1e-9 && (to_s - 32.0).abs() < 1e-9, "{from_s} to {to_s}");
         assert_eq!(told("a1_n * exp(-t / t1_s)", &[("a1_n", 5.0), ("t1_s", 20.0)]), None);
+    }
+
+    #[test]
+    fn a_force_that_goes_with_the_acceleration_drives_ahead() {
+        let text = "a1_n * exp(-v / v1_m_s) + a2_n * tanh(acceleration / acceleration1_m_s2)";
+        let told = |first: f64, second: f64| drives_ahead(&law(text, &[("a1_n", first), ("a2_n", second)]));
+        assert!(!told(-500.0, 700.0) && told(500.0, -700.0));
+    }
+
+    #[test]
+    fn a_scale_that_may_be_anything_bends_nothing() {
+        let with_sd = |text: &str, sd: f64| {
+            let mut law = law(text, &[("a1_n", 900.0), ("way1_m", 300.0)]);
+            law.constants[1].sd = Some(sd);
+            law
+        };
+        for text in [
+            "a1_n * (1 - exp(-way / way1_m))",
+            "a1_n * tanh(way / way1_m)",
+            "a1_n * (1 / (1 + way / way1_m))",
+        ] {
+            assert!(is_loose(&with_sd(text, 200.0)) && !is_loose(&with_sd(text, 100.0)), "{text}");
+        }
+        assert!(!is_loose(&with_sd("a1_n * (way / way1_m)", 200.0)));
     }
 
     #[test]

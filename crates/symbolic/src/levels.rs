@@ -42,7 +42,8 @@ pub(crate) fn levelled(bench: &Bench, start: Polished) -> Polished {
 /// Where its switches stand.
 fn switches(law: &Polished) -> Vec<(usize, usize)> {
     let of = |(term, own): (usize, &crate::term::Term)| {
-        let latches = own.factors.iter().enumerate().filter(|(_, factor)| factor.shape == Shape::Latch);
+        let latches = [Shape::Latch, Shape::Unlatch];
+        let latches = own.factors.iter().enumerate().filter(|(_, factor)| latches.contains(&factor.shape));
         latches.map(|(factor, _)| (term, factor)).collect::<Vec<_>>()
     };
     law.terms.iter().enumerate().flat_map(of).collect()

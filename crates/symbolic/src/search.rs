@@ -171,7 +171,7 @@ impl Hunt<'_> {
         Ok(all?.into_iter().flatten().collect())
     }
 
-    /// The same with pulses that take while they are on, where they say as much as those that give: beside a constant that is
+    /// The same with pulses and switches that take while they are on, where they say as much as those that give: beside a constant that is
     /// known well enough they do not, and what is switched on takes.
     fn on(&self, law: Polished) -> Polished {
         let mut law = law;

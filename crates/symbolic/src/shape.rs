@@ -45,6 +45,8 @@ pub(crate) enum Shape {
     Bump,
     /// A switch: on from c upward until u is at c − s or below
     Latch,
+    /// The same the other way: off from c upward, and on again from c − s down
+    Unlatch,
     /// (u/s)^p as it is followed late, with a whole power p and a time constant [s] that the data move
     Lag(u8, f64),
     /// u/s less what follows it late, with a time constant [s] that the data move: what springs and dampers in a row do
@@ -91,7 +93,9 @@ impl Shape {
             | Self::Wave => &[Free::Scale],
             Self::FreePower(_) => &[Free::Power],
             Self::From | Self::Under | Self::Above(_) | Self::Below(_) => &[Free::Centre],
-            Self::Step | Self::StepDown | Self::Bump | Self::Latch => &[Free::Centre, Free::Scale],
+            Self::Step | Self::StepDown | Self::Bump | Self::Latch | Self::Unlatch => {
+                &[Free::Centre, Free::Scale]
+            }
             Self::Pulse(_) => &[Free::Centre, Free::Scale, Free::Level],
             Self::Lag(..) | Self::Ahead(_) => &[Free::Lag],
             _ => &[],
@@ -141,7 +145,7 @@ fn takes_size(shape: Shape, of: &Checked) -> bool {
         Shape::Power(p) => p.fract() != 0.0 || (both && p.rem_euclid(2.0) == 1.0),
         Shape::FreePower(_) => true,
         Shape::Saturation | Shape::Hyperbola | Shape::Peak => of.negative || lost,
-        Shape::Decay | Shape::Rise | Shape::Latch => both,
+        Shape::Decay | Shape::Rise | Shape::Latch | Shape::Unlatch => both,
         Shape::Lag(p, _) => both && p % 2 == 1,
         Shape::Tanh => lost && !of.negative || of.enters == Enters::BySize,
         Shape::Above(_) => of.enters == Enters::BySize,
@@ -176,6 +180,7 @@ impl Factor {
             Shape::StepDown => 0.5 * (1.0 - ((u - c) / s).tanh()),
             Shape::Bump => (-((u - c) / s).powi(2)).exp(),
             Shape::Latch => f64::from(u8::from(u >= c)),
+            Shape::Unlatch => f64::from(u8::from(u < c)),
             Shape::Lag(p, _) => (u / s).powi(i32::from(p)),
             Shape::Ahead(_) => u / s,
             Shape::Wave => return (TAU * u / s).sin_cos(),
@@ -190,10 +195,14 @@ impl Factor {
     /// Its values along a run, at times [s] that what it remembers goes by: the sine, and the cosine where it has a phase.
     pub fn along(&self, run: &[f64], time_s: &[f64], of: &Checked) -> Vec<(f64, f64)> {
         let remembered = match self.shape {
-            Shape::Latch => {
+            Shape::Latch | Shape::Unlatch => {
                 let size = takes_size(self.shape, of);
                 let values = run.iter().map(|u| if size { u.abs() } else { *u });
-                latched(values, self.centre, self.centre - self.scale)
+                let mut on = latched(values, self.centre, self.centre - self.scale);
+                if self.shape == Shape::Unlatch {
+                    on.iter_mut().for_each(|on| *on = 1.0 - *on);
+                }
+                on
             }
             Shape::Lag(_, lag_s) => lagged(run.iter().map(|u| self.value(*u, of).0), time_s, lag_s),
             Shape::Ahead(lag_s) => {
@@ -238,6 +247,7 @@ impl Factor {
             Shape::StepDown => format!("0.5 * (1 - tanh(({u} - {centre}) / {scale}))"),
             Shape::Bump => format!("exp(-(({u} - {centre}) / {scale})^2)"),
             Shape::Latch => format!("latched({u}, {centre}, {centre} - {scale})"),
+            Shape::Unlatch => format!("(1 - latched({u}, {centre}, {centre} - {scale}))"),
             Shape::Lag(1, _) => format!("lagged({u} / {scale}, {power})"),
             Shape::Lag(p, _) => format!("lagged(({u} / {scale})^{p}, {power})"),
             Shape::Ahead(_) => format!("(({u} - lagged({u}, {power})) / {scale})"),
@@ -339,7 +349,7 @@ impl Factor {
         1 + self.shape.free().len() + usize::from(self.shape.has_phase())
     }
 
-    /// What it is, without its constants: variable, shape, exponent. What steps down is what steps up, less a constant.
+    /// What it is, without its constants: variable, shape, exponent. What steps down is what steps up, less a constant, and so is a switch the other way.
     pub fn family(&self) -> (usize, String) {
         let shape = match self.shape {
             Shape::FreePower(_) => Shape::FreePower(1.0),
@@ -347,6 +357,7 @@ impl Factor {
             Shape::Lag(p, _) => Shape::Lag(p, 0.0),
             Shape::Ahead(_) => Shape::Ahead(0.0),
             Shape::StepDown => Shape::Step,
+            Shape::Unlatch => Shape::Latch,
             other => other,
         };
         (self.variable, format!("{shape:?}"))

@@ -21,15 +21,16 @@ impl Term {
         (!phases).then(|| Self { factors: vec![one, other] })
     }
 
-    /// The pulse that is on where this one is off; none of what is no pulse by itself.
+    /// The pulse or the switch that is on where this one is off; none of what is neither by itself.
     pub fn complement(&self) -> Option<Self> {
         let [factor] = self.factors[..] else { return None };
-        let Shape::Pulse(level) = factor.shape else { return None };
-        Some(Self::of(Factor {
-            shape: Shape::Pulse(-level),
-            centre: factor.centre + 0.5 * factor.scale,
-            ..factor
-        }))
+        let (shape, centre) = match factor.shape {
+            Shape::Pulse(level) => (Shape::Pulse(-level), factor.centre + 0.5 * factor.scale),
+            Shape::Latch => (Shape::Unlatch, factor.centre),
+            Shape::Unlatch => (Shape::Latch, factor.centre),
+            _ => return None,
+        };
+        Some(Self::of(Factor { shape, centre, ..factor }))
     }
 
     /// The same with one of its steps the other way, for each of them, or with what wears off as what grows.
@@ -37,6 +38,8 @@ impl Term {
         let turned = |shape: Shape| match shape {
             Shape::Step => Some(Shape::StepDown),
             Shape::StepDown => Some(Shape::Step),
+            Shape::Latch => Some(Shape::Unlatch),
+            Shape::Unlatch => Some(Shape::Latch),
             Shape::Decay => Some(Shape::Rise),
             Shape::Rise => Some(Shape::Decay),
             _ => None,

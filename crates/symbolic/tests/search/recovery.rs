@@ -154,6 +154,16 @@ fn a_switch_that_latches_is_found_with_its_levels() {
     assert!((on - ON_M_S).abs() < 0.1 && (on - over - OFF_M_S).abs() < 0.1, "{on} {over}");
 }
 
+/// An axle that drags until it lets go at one speed, and drags again from a lower one down.
+#[test]
+fn a_switch_that_lets_go_above_a_speed_is_found_the_other_way_round() {
+    let free = switch(6.37, 3.18);
+    let (found, r2) = found(8, 100.0, |at| if free(at) { 0.0 } else { 450.0 });
+    let law = found.law().unwrap();
+    assert!(r2 > 0.95 && law.terms == 1 && law.text.contains("(1 - latched(v, "), "{r2} {}", law.text);
+    close(constant(&found, "a1_n"), 450.0);
+}
+
 /// A fan that catches at one speed and lets go at another takes, while it is driven, by the cube of the speed.
 #[test]
 fn what_a_switch_turns_on_goes_by_a_speed_of_its_own() {

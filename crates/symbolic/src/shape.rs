@@ -198,11 +198,8 @@ impl Factor {
             Shape::Latch | Shape::Unlatch => {
                 let size = takes_size(self.shape, of);
                 let values = run.iter().map(|u| if size { u.abs() } else { *u });
-                let mut on = latched(values, self.centre, self.centre - self.scale);
-                if self.shape == Shape::Unlatch {
-                    on.iter_mut().for_each(|on| *on = 1.0 - *on);
-                }
-                on
+                let on = latched(values, self.centre, self.centre - self.scale);
+                if self.shape == Shape::Latch { on } else { on.iter().map(|on| 1.0 - on).collect() }
             }
             Shape::Lag(_, lag_s) => lagged(run.iter().map(|u| self.value(*u, of).0), time_s, lag_s),
             Shape::Ahead(lag_s) => {

@@ -94,6 +94,23 @@ impl Sought {
         self.accelerations_m_s2.is_some() && law.text.contains(ACCELERATION)
     }
 
+    /// Whether a law of a force hangs on the acceleration that it makes as a mass does: by a term that is in proportion to it, nearly, at the
+    /// accelerations that were driven, or by about as much as the vehicle's own, which is the force itself by another name.
+    pub fn is_mass(&self, case: &Case, law: &Law) -> bool {
+        /// Share of the term's square that goes in proportion.
+        const NEARLY: f64 = 0.97;
+        /// Share of the mass.
+        const OWN: f64 = 0.8;
+        let Some(accelerations) = self.accelerations_m_s2.as_ref().filter(|_| self.hangs(law)) else {
+            return false;
+        };
+        let masses_kg = case.nominal.iter().filter_map(Said::first_mass_kg);
+        let own_kg = OWN * masses_kg.fold(f64::INFINITY, f64::min);
+        let terms = if law.each.is_empty() { std::slice::from_ref(law) } else { &law.each[..] };
+        let mut bent = terms.iter().filter(|term| term.text.contains(ACCELERATION));
+        bent.any(|term| straight(&term.prediction, accelerations) > NEARLY || steepest_kg(term) > own_kg)
+    }
+
     /// The same once a law is known: the vehicle accelerates as it does with that, where that hangs on the acceleration.
     pub fn moved_by(&self, case: &Case, law: &Law) -> Self {
         let moved_m_s2 = self.hangs(law).then(|| moved_m_s2(case, &law.prediction));
@@ -192,6 +209,26 @@ impl Sought {
         }
         all
     }
+}
+
+/// The share of the square of a force [N] that is in proportion to an acceleration [m/s²].
+fn straight(force_n: &[Vec<f64>], accelerations_m_s2: &[Vec<f64>]) -> f64 {
+    let runs = || force_n.iter().zip(accelerations_m_s2);
+    let pairs = || runs().flat_map(|(forces, accelerations)| forces.iter().zip(accelerations));
+    let sum = |of: fn(f64, f64) -> f64| pairs().map(|(force, at)| of(*force, *at)).sum::<f64>();
+    sum(|force, at| force * at).powi(2) / (sum(|force, _| force * force) * sum(|_, at| at * at))
+}
+
+/// How steeply a term rises with an acceleration where it does so most [kg]: tanh(a/s) by 1/s, what sets in beyond a value by that as well,
+/// and a step by half of it.
+fn steepest_kg(term: &Law) -> f64 {
+    const STEP: &str = "0.5 *";
+    let amplitude_n = term.constants.iter().find(|one| one.is_amplitude()).map_or(0.0, |one| one.value);
+    let scale = |name: &str| name.starts_with(ACCELERATION) && term.text.contains(&format!("/ {name}"));
+    let scale_m_s2 =
+        term.constants.iter().find(|one| scale(&one.name)).map_or(f64::INFINITY, |one| one.value);
+    let share = if term.text.contains(STEP) { 0.5 } else { 1.0 };
+    share * (amplitude_n / scale_m_s2).abs()
 }
 
 /// The force of the drive, sample by sample [N]: as measured, or as the motion asks for it where the vehicle does not roll freely.
@@ -384,7 +421,7 @@ fn enough(fit: &[bool], rows: &[Vec<f64>]) -> Vec<bool> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Sought, enough};
+    use super::{Sought, enough, steepest_kg, straight};
     use crate::balance::Kind;
     use headland_symbolic::{Law, Target};
 
@@ -409,6 +446,35 @@ mod tests {
         // A fifth of the greatest force, by its square.
         assert!(!sought.answers_itself(&loses(&|force_n| 0.2 * force_n / 130.0)));
         assert!(!sought.answers_itself(&loses(&|_| 0.3)));
+    }
+
+    #[test]
+    fn what_saturates_beyond_all_that_was_driven_is_in_proportion() {
+        let driven: Vec<f64> = (-50..=50).map(|step| 0.02 * f64::from(step)).collect();
+        let of = |at_m_s2: f64| {
+            let force_n = driven.iter().map(|at| 160.0 * (at / at_m_s2).tanh()).collect();
+            straight(&[force_n], &[driven.clone()])
+        };
+        assert!(of(2.0) > 0.97 && of(0.3) < 0.97, "{} {}", of(2.0), of(0.3));
+    }
+
+    #[test]
+    fn a_force_rises_with_the_acceleration_by_its_scale() {
+        let constant = |(name, value): (&str, f64)| headland_symbolic::Constant {
+            name: name.to_owned(),
+            value,
+            sd: None,
+            unit: String::new(),
+        };
+        let kg = |text: &str| {
+            let values = [("a1_n", 160.0), ("acceleration1_m_s2", -0.2), ("acceleration2_m_s2", 2.0)];
+            let constants = values.map(constant).into_iter().collect();
+            steepest_kg(&Law { text: text.to_owned(), constants, ..Law::default() })
+        };
+        assert_eq!(kg("a1_n * tanh(acceleration / acceleration2_m_s2)"), 80.0);
+        assert_eq!(kg("a1_n * max((acceleration1_m_s2 - acceleration) / acceleration2_m_s2, 0)"), 80.0);
+        let step = "a1_n * 0.5 * (1 - tanh((acceleration - acceleration1_m_s2) / acceleration2_m_s2))";
+        assert_eq!(kg(step), 40.0);
     }
 
     #[test]

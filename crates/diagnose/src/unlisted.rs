@@ -186,7 +186,8 @@ fn candidates(
             candidates.extend(with_less(case, system, pool, law, sought));
         }
         // Terms more may patch what a good one leaves.
-        let mut sound = told.into_iter().filter(|law| is_sound(law, sought));
+        let sound: Vec<Law> = told.into_iter().filter(|law| is_sound(case, law, sought)).collect();
+        let mut sound = sound.into_iter();
         let Some(mut law) = sound.next() else { continue };
         let mut part = add(case, system, pool, &law, sought);
         for simpler in sound.filter(|_| rows <= MANY_ROWS) {
@@ -203,7 +204,8 @@ fn candidates(
             if let Some(settled) = state.settle(&with(&part), &found.stand.noises)
                 && (rows <= MANY_ROWS || worth(&settled) > worth(&found.stand))
                 && let moved = sought.moved_by(case, &law)
-                && let Some(better) = first_sound(laws(case, system, pool, &start, &settled, &moved)?, sought)
+                && let Some(better) =
+                    first_sound(case, laws(case, system, pool, &start, &settled, &moved)?, &moved)
             {
                 law = better;
                 part = add(case, system, pool, &law, sought);
@@ -326,7 +328,7 @@ fn beside(
         let terms = state.pieces(&stand) - listed.len();
         if !listed.is_empty()
             && rows <= MANY_ROWS
-            && let Some(law) = first_sound(laws(case, system, pool, &listed, &stand, sought)?, sought)
+            && let Some(law) = first_sound(case, laws(case, system, pool, &listed, &stand, sought)?, sought)
             && law.terms <= terms
         {
             let part = add(case, system, pool, &law, sought);
@@ -350,16 +352,16 @@ fn beside(
 }
 
 /// The first of some laws, where it is sound.
-fn first_sound(laws: Vec<Law>, sought: &Sought) -> Option<Law> {
-    laws.into_iter().next().filter(|law| is_sound(law, sought))
+fn first_sound(case: &Case, laws: Vec<Law>, sought: &Sought) -> Option<Law> {
+    laws.into_iter().next().filter(|law| is_sound(case, law, sought))
 }
 
-/// Whether a law draws no map, each of its terms is known, none of several is a level, and what is lost on a way is that.
-fn is_sound(law: &Law, sought: &Sought) -> bool {
+/// Whether a law draws no map, each of its terms is known, none of several is a level nor any a mass, and what is lost on a way is that.
+fn is_sound(case: &Case, law: &Law, sought: &Sought) -> bool {
     let level = law.each.len() > 1 && law.each.iter().any(is_level);
     let loose = law.terms > 1 && is_loose(law);
-    let ahead = sought.hangs(law) && drives_ahead(law);
-    let known = !is_undetermined(law) && !loose && !ahead && !is_hurried(law) && !level;
+    let mass = goes_as_a_mass(case, law, sought);
+    let known = !is_undetermined(law) && !loose && !mass && !is_hurried(law) && !level;
     !is_map(law, sought.target, sought.places()) && known && is_lost(law, sought)
 }
 
@@ -406,6 +408,11 @@ fn is_loose(law: &Law) -> bool {
         constant.sd.is_some_and(|sd| constant.value < crate::refine::HALF_95 * sd)
     };
     law.constants.iter().any(|constant| scale(constant) && loose(constant))
+}
+
+/// Whether a law of a force hangs on the acceleration as a mass does, or as one does that was told too large.
+fn goes_as_a_mass(case: &Case, law: &Law, sought: &Sought) -> bool {
+    sought.is_mass(case, law) || sought.hangs(law) && drives_ahead(law)
 }
 
 /// Whether a force goes with the acceleration that it makes: beside a mass told too large it takes back what that is too much, and
@@ -745,17 +752,15 @@ fn with_less(
     law: &Law,
     sought: &Sought,
 ) -> Vec<Vec<Part>> {
-    let terms: Vec<Part> = law
-        .each
-        .iter()
-        .filter(|term| {
-            !is_map(term, sought.target, sought.places())
-                && is_lost(term, sought)
-                && !is_hurried(term)
-                && !is_level(term)
-        })
-        .map(|term| add(case, system, pool, term, sought))
-        .collect();
+    let able = |term: &&Law| {
+        !is_map(term, sought.target, sought.places())
+            && is_lost(term, sought)
+            && !is_hurried(term)
+            && !is_level(term)
+            && !goes_as_a_mass(case, term, sought)
+    };
+    let able: Vec<&Law> = law.each.iter().filter(able).collect();
+    let terms: Vec<Part> = able.into_iter().map(|term| add(case, system, pool, term, sought)).collect();
     let mut all: Vec<Vec<Part>> = terms.iter().map(|term| vec![term.clone()]).collect();
     if terms.len() > 2 {
         all.extend((0..terms.len()).map(|gone| {

@@ -453,7 +453,7 @@ mod tests {
         let driven: Vec<f64> = (-50..=50).map(|step| 0.02 * f64::from(step)).collect();
         let of = |at_m_s2: f64| {
             let force_n = driven.iter().map(|at| 160.0 * (at / at_m_s2).tanh()).collect();
-            straight(&[force_n], &[driven.clone()])
+            straight(&[force_n], std::slice::from_ref(&driven))
         };
         assert!(of(2.0) > 0.97 && of(0.3) < 0.97, "{} {}", of(2.0), of(0.3));
     }

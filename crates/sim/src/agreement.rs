@@ -5,8 +5,8 @@
 //! answer, which comes closer by about the share that is lost.
 //!
 //! Source: the secant method with bisection where it leaves its bracket (Brent, *Algorithms for Minimization without Derivatives*
-//! (1973), chapter 4). A force that pushes ahead by more than the mass times the acceleration has no root, nor has one that leaps
-//! across it: the last of the rounds is taken then.
+//! (1973), chapter 4). A force that leaps across its root has none: the last of the rounds is taken then. One that pushes ahead by more
+//! than the mass times the acceleration has one, at which the vehicle moves as with a mass below nought.
 
 use crate::balance::Made;
 

@@ -7,7 +7,7 @@ use crate::line::Line;
 use crate::recorded::Recorded;
 use crate::said::inputs;
 use headland_calibrate::statistics::median;
-use headland_sim::{Inputs, local_fit, travelled};
+use headland_sim::{Drive, Inputs, local_fit, travelled};
 use headland_symbolic::{Enters, Variable};
 
 /// A wave takes so many blocks of samples.
@@ -157,7 +157,7 @@ fn as_it_lasts_m_s2(run: &Recorded, made: &[f64]) -> Vec<f64> {
 
 /// What a force may be made of beside a measured one, sample by sample of every run [m/s²]: the acceleration as that force makes it or as
 /// the speed has it, whichever is less, and none where they do not agree on its sign. Where a speed is held the first is the mismatch
-/// itself, and the second where a force is. None where any run knows no force.
+/// itself, and the second where a force is: none where any run knows no force, or coasts all along.
 pub fn agreed_m_s2(case: &Case) -> Option<Vec<Vec<f64>>> {
     let of_run = |run: &Recorded| {
         let made =
@@ -167,7 +167,8 @@ pub fn agreed_m_s2(case: &Case) -> Option<Vec<Vec<f64>>> {
         };
         made.value.iter().zip(&run.motion.slope).map(least).collect()
     };
-    let forced = case.runs.iter().all(|run| run.force_is_known() && run.forward().is_some());
+    let driven = |run: &Recorded| run.forward().is_some_and(|drive| drive != Drive::Coast);
+    let forced = case.runs.iter().all(|run| run.force_is_known() && driven(run));
     forced.then(|| case.runs.iter().map(of_run).collect())
 }
 

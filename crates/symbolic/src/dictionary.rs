@@ -153,7 +153,6 @@ fn full(variables: &[Checked], index: usize) -> Vec<Factor> {
             all.extend([0.5, 1.0, 2.0].map(|p| make(Shape::Power(p), of.round_size(), 0.0)));
             if of.enters == Enters::BySize {
                 all.extend(beyond(of, index));
-                curved(&mut all, &[Shape::Tanh, Shape::Saturation], of.size());
                 return all;
             }
             if of.negative {

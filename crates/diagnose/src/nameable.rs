@@ -94,11 +94,11 @@ pub fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     // Where nobody recorded a place it is the way.
     let placed = case.runs.iter().any(|run| run.measured.trace.get("position_m").is_some());
     let from_one_place = way_is_place(case);
-    let ways = (placed || !from_one_place).then(|| ways_m(case));
+    let ways = (placed && !kind.is_power() || !from_one_place).then(|| ways_m(case));
     let enters = |name: &str| match name {
         "acceleration" if !forced => Enters::BySize,
         // What fades from the place at which all runs begin does so with the way.
-        "x" if placed && from_one_place => Enters::Within,
+        "x" if placed && from_one_place && !kind.is_power() => Enters::Within,
         _ => Enters::Freely,
     };
     let whole = |runs: &Vec<Vec<f64>>| runs.iter().flatten().all(|value| value.is_finite());

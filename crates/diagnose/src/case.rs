@@ -1,20 +1,22 @@
 //! What is diagnosed: a scenario, a recording, and everything that is prepared once.
 
-use crate::balance::{Kind, Rows, System, bearing, block_s, kinds};
-use crate::catalogue::{ARTEFACTS, Around, Cause, causes};
-use crate::cycles::{Cycles, cycles};
-use crate::own::own;
-use crate::recorded::{Recorded, recorded};
-use crate::remembered::Remembered;
-use crate::said::{Said, said};
-use crate::search::Accepted;
-use crate::sensors::corrected;
+use crate::DiagnoseError;
+use crate::balances::balance::{Kind, Rows, System, bearing, block_s, kinds};
+use crate::causes::catalogue::{ARTEFACTS, Around, Cause, causes};
+use crate::causes::cycles::{Cycles, cycles};
+use crate::causes::own::own;
+use crate::causes::remembered::Remembered;
+use crate::causes::sensors::corrected;
+use crate::choosing::search::Accepted;
+use crate::proof::mirror;
+use crate::runs::placed;
+use crate::runs::recorded::{Recorded, recorded};
+use crate::runs::said::{Said, said};
+use crate::runs::split::{split, traits};
+use crate::runs::standin::{Prepared, prepared};
+use crate::runs::way::Scale;
 use crate::so_far::SoFar;
-use crate::split::{split, traits};
-use crate::standin::{Prepared, prepared};
-use crate::unmoved::{UNMOVED, UNTOLD, is_mass, moved};
-use crate::way::Scale;
-use crate::{DiagnoseError, mirror, placed};
+use crate::soundness::unmoved::{UNMOVED, UNTOLD, is_mass, moved};
 use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
 use headland_calibrate::study::Study;
 use headland_plugin::{Contact, Registry, closest};
@@ -343,7 +345,7 @@ impl<'a> Case<'a> {
     fn around(&self, model: &headland_sim::Model) -> Around {
         let moving = |run: &'_ Recorded| -> Vec<f64> {
             let speeds = run.motion.value.iter().step_by(7).copied();
-            speeds.filter(|speed| *speed > crate::recorded::SLOWEST_M_S).collect()
+            speeds.filter(|speed| *speed > crate::runs::recorded::SLOWEST_M_S).collect()
         };
         let speeds = sorted(&self.runs.iter().flat_map(moving).collect::<Vec<f64>>());
         let quantile = |share: f64| if speeds.is_empty() { 1.0 } else { quantile_of_sorted(&speeds, share) };

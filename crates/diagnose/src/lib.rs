@@ -9,120 +9,50 @@
 
 #![allow(clippy::result_large_err, reason = "a diagnosis fails once, not in a loop")]
 
-mod abreast;
-mod answering;
-mod balance;
-mod band;
-mod begun;
-mod bend;
-mod brakes;
-mod built;
+mod balances;
 mod case;
-mod catalogue;
-mod change_points;
-mod conclude;
-mod contest;
-mod contradiction;
-mod crossval;
-mod curved;
-mod cycles;
-mod denied;
-mod eliminated;
-mod elsewhere;
-mod engine_off;
+mod causes;
+mod choosing;
 mod error;
-mod events;
-mod exchange;
 mod experiment;
-mod faults;
-mod filled;
-mod foreseen;
-mod foretells;
-mod formula;
-mod forward;
-mod functions;
-mod gram;
-mod held;
-mod in_doubt;
-mod in_neutral;
-mod jumps;
-mod laid;
-mod late_power;
-mod leaps;
-mod level;
-mod likeliest;
+mod law;
 mod line;
-mod locate;
 mod look;
-mod losses;
-mod loudness;
-mod map;
-mod mirror;
-mod nameable;
-mod noise;
-mod overrun;
-mod own;
-mod placed;
-mod places;
-mod profile;
-mod prove;
-mod proven;
-mod recorded;
-mod refine;
-mod regeneration;
-mod remembered;
-mod report;
-mod rivals;
-mod rows;
-mod said;
-mod search;
+mod outliers;
+mod proof;
+mod runs;
 mod second;
-mod sensors;
-mod sharpen;
-mod slowed;
+mod single_runs;
 mod so_far;
-mod sparse;
-mod spells;
-mod split;
-mod spreading;
-mod standin;
-mod state;
-mod steps;
-mod straying;
-mod stuck;
-mod student;
-mod tails;
-mod thinned;
-mod together;
-mod trial;
-mod unlisted;
-mod unmoved;
-mod unsourced;
-mod voltage;
-mod way;
-mod widths;
-mod windowed;
-mod withdraw;
-mod words;
+mod soundness;
+mod told;
 
-pub use balance::Kind;
+pub use balances::balance::Kind;
 pub use case::{Options, Progress, Silent};
 pub use error::DiagnoseError;
 pub use experiment::Experiment;
-pub use map::{Mismatch, Over};
-pub use report::{
+pub use told::map::{Mismatch, Over};
+pub use told::report::{
     Calibrated, Diagnosed, Diagnosis, FindingKind, FindingReport, Fit, FitRuns, Interval, LeftOver,
     ParameterReport, RivalReport as Rival, Shown, Tried, Verdict,
 };
 
-pub(crate) use balance::System;
+pub(crate) use balances::balance::System;
 pub(crate) use case::Case;
 
-use events::Event;
+use causes::losses;
+use choosing::foreseen;
 use headland_plugin::Registry;
 use headland_recording::Recording;
 use headland_scenario::Scenario;
+use law::unlisted;
 use look::Look;
+use proof::{proven, refine, withdraw};
+use runs::{begun, late_power, overrun};
+use single_runs::events::Event;
+use single_runs::{brakes, regeneration, spells};
+use soundness::{contradiction, engine_off, faults, unsourced};
+use told::report;
 
 /// Diagnoses a recording with a scenario.
 ///

@@ -1,14 +1,21 @@
 //! A look at the runs: their rows, the regressors and what they tell; and looks after it, from what was found before.
 
-use crate::balance::{Kind, Rows, System};
-use crate::built::Early;
+use crate::balances::balance::{Kind, Rows, System};
 use crate::case::Correction;
-use crate::catalogue::Form;
-use crate::contest::Contest;
-use crate::search::{Accepted, Found, LEAST_GAIN, MOST_CAUSES, PER_CAUSE, search, search_without, worth};
-use crate::state::{Part, Stand, State};
-use crate::trial::{Pool, Trial, add_trial_at, pool};
-use crate::{Case, DiagnoseError, bend, built, sensors, sharpen, straying};
+use crate::causes::catalogue::Form;
+use crate::causes::sensors;
+use crate::causes::trial::{Pool, Trial, add_trial_at, pool};
+use crate::choosing::bend;
+use crate::choosing::built;
+use crate::choosing::built::Early;
+use crate::choosing::contest::Contest;
+use crate::choosing::search::{
+    Accepted, Found, LEAST_GAIN, MOST_CAUSES, PER_CAUSE, search, search_without, worth,
+};
+use crate::choosing::sharpen;
+use crate::choosing::state::{Part, Stand, State};
+use crate::outliers::straying;
+use crate::{Case, DiagnoseError};
 use std::collections::BTreeSet;
 
 /// A search from nothing takes long with more rows than this; what was found before is then where the next one starts.

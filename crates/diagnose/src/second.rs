@@ -7,8 +7,8 @@
 //! like that, by lying off nought all along, by leaving more than noise or, of a scale, by standing beside physics, the runs are
 //! looked at once more without it, and the runs that were held out decide.
 
-use crate::report::{Diagnosed, Diagnosis, FindingKind, FindingReport, Fit, FitRuns, Verdict};
-use crate::rivals::twin;
+use crate::choosing::rivals::twin;
+use crate::told::report::{Diagnosed, Diagnosis, FindingKind, FindingReport, Fit, FitRuns, Verdict};
 use crate::{DiagnoseError, Options};
 
 /// What is free to be almost anything.
@@ -111,8 +111,8 @@ pub fn opinion(
 #[cfg(test)]
 mod tests {
     use super::{CLOCK, LATE, LEVEL, MAP, SCALES, doubtful, is_plainer, is_renamed};
-    use crate::report::FindingKind::{Artefact, Physics};
-    use crate::report::finding;
+    use crate::told::report::FindingKind::{Artefact, Physics};
+    use crate::told::report::finding;
 
     #[test]
     fn a_map_by_its_other_name_is_the_same_map() {

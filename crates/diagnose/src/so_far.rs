@@ -4,15 +4,15 @@
 //! A map of a path that one run drove alone tells how that run accelerates, and no more: a mass that pushed on its slopes would
 //! take its whole shape up again at the cost of one number.
 
-use crate::balance::{Kind, change};
-use crate::catalogue::{Cause, Class, Form, Term};
-use crate::mirror::is_whole;
-use crate::prove::text;
-use crate::recorded::{Recorded, share_paths};
-use crate::refine::{Cured, Refined, plain};
-use crate::said::{Said, said};
-use crate::search::Found;
-use crate::trial::Pool;
+use crate::balances::balance::{Kind, change};
+use crate::causes::catalogue::{Cause, Class, Form, Term};
+use crate::causes::trial::Pool;
+use crate::choosing::search::Found;
+use crate::proof::mirror::is_whole;
+use crate::proof::prove::text;
+use crate::proof::refine::{Cured, Refined, plain};
+use crate::runs::recorded::{Recorded, share_paths};
+use crate::runs::said::{Said, said};
 use crate::{Case, DiagnoseError};
 use headland_plugin::{Action, Effect, Situation, State};
 use headland_scenario::Scenario;

@@ -3,14 +3,14 @@
 
 use super::signature::{by_values, signatures};
 use super::stage::Stage;
-use crate::catalogue::Form;
-use crate::gram::{Column, Reduced, Whitened};
-use crate::noise::{Noise, Noises};
-use crate::profile::{COARSE, Function, Profile, Spread, Widths};
-use crate::refine::Cured;
-use crate::search::Found;
-use crate::state::WIDER;
-use crate::trial::{Pool, Trial};
+use crate::balances::gram::{Column, Reduced, Whitened};
+use crate::balances::noise::{Noise, Noises};
+use crate::causes::catalogue::Form;
+use crate::causes::profile::{COARSE, Function, Profile, Spread, Widths};
+use crate::causes::trial::{Pool, Trial};
+use crate::choosing::search::Found;
+use crate::choosing::state::WIDER;
+use crate::proof::refine::Cured;
 use crate::{Case, DiagnoseError, System};
 use nalgebra::DVector;
 use std::collections::BTreeMap;
@@ -172,7 +172,7 @@ impl<'a, 'b> Columns<'a, 'b> {
     fn values(&self, trial: &Trial, sizes: &[f64]) -> Option<Vec<f64>> {
         let cause = &self.case.causes[trial.cause];
         let mut shape = trial.shape.iter();
-        let one = |(index, term): (usize, &crate::catalogue::Term)| {
+        let one = |(index, term): (usize, &crate::causes::catalogue::Term)| {
             if !term.linear {
                 return Some(shape.next().copied().unwrap_or(1.0));
             }

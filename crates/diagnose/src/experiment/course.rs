@@ -1,8 +1,9 @@
 //! The runs that a user can drive, in the words in which they are proposed.
 
-use crate::balance::Kind;
-use crate::recorded::Recorded;
-use crate::{Case, catalogue::Cause};
+use crate::Case;
+use crate::balances::balance::Kind;
+use crate::causes::catalogue::Cause;
+use crate::runs::recorded::Recorded;
 use headland_sim::Drive;
 
 /// How a run moves.

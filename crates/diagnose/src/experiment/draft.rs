@@ -2,8 +2,8 @@
 //! and the sampling of the runs at hand.
 
 use super::course::{Course, Motion, Without};
-use crate::recorded::Recorded;
-use crate::said::Said;
+use crate::runs::recorded::Recorded;
+use crate::runs::said::Said;
 use crate::{Case, DiagnoseError};
 use headland_calibrate::study::Measured;
 use headland_sim::{Drive, Inputs, Model, Replay, local_fit, replay};

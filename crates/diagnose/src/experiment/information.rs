@@ -6,8 +6,8 @@
 //! Source: Lindley, *Ann. Math. Statist.* 27 (1956), and Box and Hill, *Technometrics* 9 (1967), on choosing experiments
 //! between models; the evidence is that of the search.
 
-use crate::gram::{Estimate, Reduced};
-use crate::refine::HALF_95;
+use crate::balances::gram::{Estimate, Reduced};
+use crate::proof::refine::HALF_95;
 use nalgebra::{DMatrix, DVector};
 
 /// What is known of two causes, and would be.

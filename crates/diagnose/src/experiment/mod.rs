@@ -14,12 +14,12 @@ mod stage;
 mod timed;
 mod words;
 
-use crate::catalogue::Form;
-use crate::gram::Reduced;
-use crate::noise::Noises;
-use crate::refine::{Cured, Refined};
-use crate::search::{Found, Rival};
-use crate::trial::{Pool, Trial};
+use crate::balances::gram::Reduced;
+use crate::balances::noise::Noises;
+use crate::causes::catalogue::Form;
+use crate::causes::trial::{Pool, Trial};
+use crate::choosing::search::{Found, Rival};
+use crate::proof::refine::{Cured, Refined};
 use crate::{Case, DiagnoseError, System};
 use columns::Columns;
 use course::Without;

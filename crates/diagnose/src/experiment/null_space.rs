@@ -1,10 +1,10 @@
 //! Which combinations of free parameters and accepted causes the recordings know, and which they do not.
 
-use crate::gram::{Column, Whitened};
-use crate::refine::Refined;
-use crate::search::Found;
-use crate::trial::Pool;
-use crate::words::number;
+use crate::balances::gram::{Column, Whitened};
+use crate::causes::trial::Pool;
+use crate::choosing::search::Found;
+use crate::proof::refine::Refined;
+use crate::told::words::number;
 use crate::{Case, System};
 use headland_calibrate::separable::{Blind, blind_directions};
 

@@ -1,11 +1,11 @@
 //! What a cause does at the size that was found, which is not always in proportion to it.
 
-use crate::balance::change;
-use crate::catalogue::{Cause, Form};
-use crate::gram::Column;
-use crate::recorded::Recorded;
-use crate::said::Said;
-use crate::trial::{Trial, for_run, mute, tried_on};
+use crate::balances::balance::change;
+use crate::balances::gram::Column;
+use crate::causes::catalogue::{Cause, Form};
+use crate::causes::trial::{Trial, for_run, mute, tried_on};
+use crate::runs::recorded::Recorded;
+use crate::runs::said::Said;
 use crate::{Case, DiagnoseError, Kind, System};
 
 /// A term smaller than this share of its usual size is as good as nothing: its column is made with this much.

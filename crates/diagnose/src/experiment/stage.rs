@@ -4,14 +4,14 @@ use super::columns::nothing;
 use super::course::{Course, Without, courses};
 use super::draft::{base, drafted, forced};
 use super::signature::by_values;
-use crate::balance::{Kind, System, block_s};
-use crate::catalogue::{Cause, Class};
-use crate::gram::Column;
-use crate::noise::{Noise, Shape};
-use crate::refine::{Refined, said_with_all};
-use crate::remembered::Remembered;
-use crate::sensors::{PITCH, PITCH_RAD_S2_M, fault};
-use crate::trial::{Pool, Trial, add_trial, for_run, nuisance};
+use crate::balances::balance::{Kind, System, block_s};
+use crate::balances::gram::Column;
+use crate::balances::noise::{Noise, Shape};
+use crate::causes::catalogue::{Cause, Class};
+use crate::causes::remembered::Remembered;
+use crate::causes::sensors::{PITCH, PITCH_RAD_S2_M, fault};
+use crate::causes::trial::{Pool, Trial, add_trial, for_run, nuisance};
+use crate::proof::refine::{Refined, said_with_all};
 use crate::{Case, DiagnoseError};
 use headland_scenario::Scenario;
 use rayon::prelude::*;
@@ -43,7 +43,7 @@ impl<'a> Stage<'a> {
     pub fn new(case: &Case<'a>, refined: &Refined, doubted: &[usize]) -> Result<Option<Self>, DiagnoseError> {
         let Some(base) = base(case) else { return Ok(None) };
         let values = refined.values();
-        let known = |one: &&crate::refine::Cured| {
+        let known = |one: &&crate::proof::refine::Cured| {
             one.function().is_none() && one.events.is_empty() && one.cause.class != Class::Artefact
         };
         let effects: Vec<(Cause, Vec<f64>)> =

@@ -4,11 +4,11 @@
 use super::null_space::listed;
 use super::{Candidate, TELLS};
 use crate::Case;
-use crate::catalogue::Form;
-use crate::cycles::correlation;
-use crate::profile::Function;
-use crate::refine::{Cured, HALF_95};
-use crate::words::number;
+use crate::causes::catalogue::Form;
+use crate::causes::cycles::correlation;
+use crate::causes::profile::Function;
+use crate::proof::refine::{Cured, HALF_95};
+use crate::told::words::number;
 use headland_calibrate::statistics::median;
 
 /// Functions that are correlated by more than this in every two runs take the same course.

@@ -5,8 +5,8 @@ use super::null_space::listed;
 use super::timed;
 use super::{Doubt, ENOUGH, Experiment, Judged, TELLS};
 use crate::Case;
-use crate::refine::Cured;
-use crate::words::number;
+use crate::proof::refine::Cured;
+use crate::told::words::number;
 
 /// An interval that shrinks by less than this factor stays as it is.
 const LEAST_NARROWING: f64 = 1.05;

@@ -1,0 +1,6 @@
+//! What happens once, in a single run: brakes and spells.
+
+pub(crate) mod brakes;
+pub(crate) mod events;
+pub(crate) mod regeneration;
+pub(crate) mod spells;

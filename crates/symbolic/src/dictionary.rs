@@ -400,8 +400,8 @@ mod tests {
             factors
                 .iter()
                 .map(|factor| {
-                    let both = factor.along(&[0.7, -0.7], &[0.0, 1.0], &checked[0]);
-                    (both[0].0, both[1].0)
+                    let both = factor.along(&[0.7, -0.7], &[0.0, 1.0], &checked[0]).first;
+                    (both[0], both[1])
                 })
                 .collect()
         };
@@ -427,8 +427,8 @@ mod tests {
         let factors = full(&checked, 0);
         assert!(factors.len() > 5 && short(&checked, 0).is_empty());
         for mut factor in factors {
-            let of = |factor: &Factor| factor.along(&[-0.9, 0.0, 0.9], &[0.0, 1.0, 2.0], &checked[0]);
-            let [(behind, _), (nought, _), (ahead, _)] = of(&factor)[..] else { panic!() };
+            let of = |factor: &Factor| factor.along(&[-0.9, 0.0, 0.9], &[0.0, 1.0, 2.0], &checked[0]).first;
+            let [behind, nought, ahead] = of(&factor)[..] else { panic!() };
             let none = |value: f64| value.abs() < 0.02;
             let one_sided = none(behind) || none(ahead) || factor.shape == Shape::Tanh;
             assert!(none(nought) && one_sided, "{factor:?}");

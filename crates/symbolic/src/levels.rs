@@ -1,7 +1,7 @@
 //! Levels of a switch by trying them: what it does jumps where a run just reaches a level or just does not, so that no slope leads
 //! from one side of a jump to the other.
 
-use crate::polish::{Polished, amplitudes};
+use crate::polish::{Polished, columns_of, with_columns};
 use crate::problem::Bench;
 use crate::shape::{Factor, Shape};
 
@@ -18,6 +18,8 @@ pub(crate) fn levelled(bench: &Bench, start: Polished) -> Polished {
     for _ in 0..ROUNDS {
         let before = best.cost;
         for (term, factor) in switches(&best) {
+            // The other terms stay as they are.
+            let mut columns = columns_of(bench, &best.terms);
             for moves in [moves_on, moves_off] {
                 let own = best.terms[term].factors[factor];
                 let spread = bench.variables[own.variable].spread();
@@ -26,7 +28,9 @@ pub(crate) fn levelled(bench: &Bench, start: Polished) -> Polished {
                     let Some(moved) = moves(own, by) else { continue };
                     let mut terms = best.terms.clone();
                     terms[term].factors[factor] = moved;
-                    if let Some(other) = amplitudes(bench, terms).filter(|other| other.cost < best.cost) {
+                    columns[term] = bench.columns(&terms[term]);
+                    let other = with_columns(bench, terms, &columns.concat());
+                    if let Some(other) = other.filter(|other| other.cost < best.cost) {
                         best = other;
                     }
                 }

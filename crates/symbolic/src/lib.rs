@@ -30,6 +30,7 @@ mod problem;
 mod screen;
 mod search;
 mod shape;
+mod slope;
 mod term;
 mod validate;
 mod variable;

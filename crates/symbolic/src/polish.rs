@@ -8,7 +8,7 @@
 use crate::problem::Bench;
 use crate::shape::{Factor, Free};
 use crate::term::Term;
-use crate::vector::{add, dot, normalise, take_out};
+use crate::vector::{add, dot, normalise, take_out, times};
 use nalgebra::{DMatrix, DVector};
 
 /// A law with its constants.
@@ -30,8 +30,6 @@ type Place = (usize, usize, Free);
 
 /// Columns of which less than this share is left beside the others make amplitudes that cancel each other.
 const LEAST_LEFT: f64 = 2e-3;
-/// Difference by which derivatives are taken, on the inner scale of a constant.
-const NUDGE: f64 = 1e-4;
 /// A step that promises less than this [nats, twice] is not taken.
 const LEAST_STEP: f64 = 0.02;
 
@@ -71,8 +69,13 @@ impl Polished {
 
     /// Derivatives of its rows by its inner constants, as they are.
     pub fn slopes(&self, bench: &Bench) -> Vec<Vec<f64>> {
-        let of = |place: &Place| slope(bench, &self.terms, &self.amplitudes, *place);
-        places(&self.terms).iter().map(of).collect()
+        let mut first = 0;
+        let of = |term: &Term| {
+            let share = &self.amplitudes[first..first + term.width()];
+            first += term.width();
+            slopes_of(bench, term, share)
+        };
+        self.terms.iter().flat_map(of).collect()
     }
 }
 
@@ -86,11 +89,17 @@ pub(crate) fn places(terms: &[Term]) -> Vec<Place> {
 
 /// A law with its amplitudes; none where its terms cannot be told apart.
 pub(crate) fn amplitudes(bench: &Bench, terms: Vec<Term>) -> Option<Polished> {
-    let columns: Vec<Vec<f64>> = terms.iter().flat_map(|term| bench.columns(term)).collect();
-    solve(bench, terms, &columns)
+    let columns = columns_of(bench, &terms).concat();
+    with_columns(bench, terms, &columns)
 }
 
-fn solve(bench: &Bench, terms: Vec<Term>, columns: &[Vec<f64>]) -> Option<Polished> {
+/// The projected columns of each term.
+pub(crate) fn columns_of(bench: &Bench, terms: &[Term]) -> Vec<Vec<Vec<f64>>> {
+    terms.iter().map(|term| bench.columns(term)).collect()
+}
+
+/// A law with its amplitudes, of the projected columns of its terms.
+pub(crate) fn with_columns(bench: &Bench, terms: Vec<Term>, columns: &[Vec<f64>]) -> Option<Polished> {
     let count = columns.len();
     let mut basis: Vec<Vec<f64>> = Vec::with_capacity(count);
     let mut triangle = DMatrix::zeros(count, count);
@@ -128,38 +137,44 @@ fn solve(bench: &Bench, terms: Vec<Term>, columns: &[Vec<f64>]) -> Option<Polish
     })
 }
 
-/// Derivative of a law's rows by one of its inner constants. Only the factor that holds it is taken twice.
-fn slope(bench: &Bench, terms: &[Term], amplitudes: &[f64], (index, factor, free): Place) -> Vec<f64> {
-    let first: usize = terms[..index].iter().map(Term::width).sum();
-    let term = &terms[index];
-    let share = &amplitudes[first..first + term.width()];
-    let own = term.factors[factor];
-    let of = &bench.variables[own.variable];
-    let moved = |by: f64| {
-        let mut moved = own;
-        moved.set_inner(free, own.inner(free, of) + by, of);
-        moved
+/// Derivatives of the rows of a term with its amplitudes by each of its inner constants.
+fn slopes_of(bench: &Bench, term: &Term, share: &[f64]) -> Vec<Vec<f64>> {
+    let free = term.free();
+    let phased = term.factors.iter().any(|factor| factor.shape.has_phase());
+    // Beside a factor with a phase the other one has no amplitude of its own, and without one it is that of the first.
+    let share_of = |place: usize| {
+        let own = if phased { term.factors[place].shape.has_phase() } else { place == 0 };
+        if own { share } else { &[1.0] }
     };
-    // Beside a factor with a phase the one that moves has no amplitude of its own.
-    let phased = term.factors.iter().any(|factor| factor.shape.has_phase()) && !own.shape.has_phase();
-    let inner: &[f64] = if phased { &[1.0] } else { share };
-    let (below, above) = (moved(-NUDGE), moved(NUDGE));
-    bench.rows(|run| {
-        let sized = |factor: &Factor, share: &[f64]| {
+    let mut all: Vec<Vec<f64>> = vec![Vec::with_capacity(bench.rows); free.len()];
+    if free.is_empty() {
+        return all;
+    }
+    for (run, _) in &bench.fitted {
+        let seen = |factor: &Factor| {
             let of = &bench.variables[factor.variable];
-            factor.sized(&of.seen[run], &of.seen_s[run], of, share)
+            (&of.seen[*run], &of.seen_s[*run], of)
         };
-        let (above, below) = (sized(&above, inner), sized(&below, inner));
-        let mut slope: Vec<f64> =
-            above.iter().zip(&below).map(|(above, below)| (above - below) / (2.0 * NUDGE)).collect();
-        for (_, other) in term.factors.iter().enumerate().filter(|(place, _)| *place != factor) {
-            let share = if other.shape.has_phase() { share } else { &[1.0] };
-            for (slope, sized) in slope.iter_mut().zip(sized(other, share)) {
-                *slope *= sized;
+        let sized = |(place, factor): (usize, &Factor)| {
+            let (values, times_s, of) = seen(factor);
+            factor.along(values, times_s, of).sized(share_of(place))
+        };
+        let sized: Vec<Vec<f64>> = if term.factors.len() > 1 {
+            term.factors.iter().enumerate().map(sized).collect()
+        } else {
+            Vec::new()
+        };
+        for ((place, free), rows) in free.iter().zip(&mut all) {
+            let factor = &term.factors[*place];
+            let (values, times_s, of) = seen(factor);
+            let mut slope = factor.slope(*free, values, times_s, of).sized(share_of(*place));
+            for (_, other) in sized.iter().enumerate().filter(|(other, _)| other != place) {
+                times(&mut slope, other);
             }
+            rows.extend(bench.rows_of(*run, &slope));
         }
-        slope
-    })
+    }
+    all
 }
 
 /// Moves the free constants downhill, at most so many steps.

@@ -225,11 +225,6 @@ impl<'a> Bench<'a> {
         rows.resize(self.residual[run].len(), 0.0);
         rows
     }
-
-    /// Rows of all runs that are fitted, of samples that `of` gives for each.
-    pub fn rows(&self, of: impl Fn(usize) -> Vec<f64>) -> Vec<f64> {
-        self.fitted.iter().flat_map(|(run, _)| self.rows_of(*run, &of(*run))).collect()
-    }
 }
 
 /// With fewer rows no law of a few constants can be told from chance.

@@ -78,7 +78,7 @@ pub(crate) enum Free {
 pub(crate) const STRAIGHT: f64 = 0.5;
 
 /// How steeply a pulse goes on and off: within a hundredth of its period.
-const EDGE: f64 = 20.0;
+pub(crate) const EDGE: f64 = 20.0;
 
 impl Shape {
     /// Which constants are free.
@@ -135,9 +135,39 @@ pub(crate) struct Factor {
     pub centre: f64,
 }
 
+/// What a shape is along a run: one column, or a sine and a cosine.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Columns {
+    pub first: Vec<f64>,
+    pub cosine: Option<Vec<f64>>,
+}
+
+impl Columns {
+    pub fn one(first: Vec<f64>) -> Self {
+        Self { first, cosine: None }
+    }
+
+    pub fn phased(both: impl Iterator<Item = (f64, f64)>) -> Self {
+        let (first, cosine) = both.unzip();
+        Self { first, cosine: Some(cosine) }
+    }
+
+    /// With the amplitudes of sine and cosine, and else with the one that there is.
+    pub fn sized(self, share: &[f64]) -> Vec<f64> {
+        let Self { mut first, cosine } = self;
+        for value in &mut first {
+            *value *= share[0];
+        }
+        for (value, cosine) in first.iter_mut().zip(cosine.iter().flatten()) {
+            *value += share[1] * cosine;
+        }
+        first
+    }
+}
+
 /// Whether the formula takes the absolute value: where a root of a negative number would stand, or where a law of size
 /// meets values of both signs.
-fn takes_size(shape: Shape, of: &Checked) -> bool {
+pub(crate) fn takes_size(shape: Shape, of: &Checked) -> bool {
     // A drive loses both ways, whether or not it was seen to hold back.
     let lost = of.known.name == DRIVE;
     let both = of.negative && of.known.kind != Kind::Level || lost;
@@ -154,10 +184,10 @@ fn takes_size(shape: Shape, of: &Checked) -> bool {
 }
 
 impl Factor {
-    /// Its value at a sample: the sine, and the cosine where it has a phase. What it remembers it has from [`Factor::along`] alone.
-    fn value(&self, u: f64, of: &Checked) -> (f64, f64) {
+    /// Its value where the variable, or its size where it takes that, is u: the sine, and the cosine where it has a phase. What it
+    /// remembers it has from [`Factor::along`] alone.
+    fn value(&self, u: f64) -> (f64, f64) {
         let Self { scale: s, centre: c, .. } = *self;
-        let u = if takes_size(self.shape, of) { u.abs() } else { u };
         let value = match self.shape {
             Shape::Power(p) if p.fract() == 0.0 =>
             {
@@ -193,30 +223,27 @@ impl Factor {
     }
 
     /// Its values along a run, at times [s] that what it remembers goes by: the sine, and the cosine where it has a phase.
-    pub fn along(&self, run: &[f64], time_s: &[f64], of: &Checked) -> Vec<(f64, f64)> {
-        let remembered = match self.shape {
+    pub fn along(&self, run: &[f64], time_s: &[f64], of: &Checked) -> Columns {
+        let size = takes_size(self.shape, of);
+        let variable = || run.iter().map(|u| if size { u.abs() } else { *u });
+        let values = || variable().map(|u| self.value(u).0);
+        match self.shape {
             Shape::Latch | Shape::Unlatch => {
-                let size = takes_size(self.shape, of);
-                let values = run.iter().map(|u| if size { u.abs() } else { *u });
-                let on = latched(values, self.centre, self.centre - self.scale);
-                if self.shape == Shape::Latch { on } else { on.iter().map(|on| 1.0 - on).collect() }
+                let on = latched(variable(), self.centre, self.centre - self.scale);
+                Columns::one(if self.shape == Shape::Latch {
+                    on
+                } else {
+                    on.iter().map(|on| 1.0 - on).collect()
+                })
             }
-            Shape::Lag(_, lag_s) => lagged(run.iter().map(|u| self.value(*u, of).0), time_s, lag_s),
+            Shape::Lag(_, lag_s) => Columns::one(lagged(values(), time_s, lag_s)),
             Shape::Ahead(lag_s) => {
-                let values = || run.iter().map(|u| self.value(*u, of).0);
-                values().zip(lagged(values(), time_s, lag_s)).map(|(value, late)| value - late).collect()
+                let late = lagged(values(), time_s, lag_s);
+                Columns::one(values().zip(late).map(|(value, late)| value - late).collect())
             }
-            _ => return run.iter().map(|u| self.value(*u, of)).collect(),
-        };
-        remembered.into_iter().map(|value| (value, 0.0)).collect()
-    }
-
-    /// Its values along a run, with the amplitudes of sine and cosine where it has a phase and else with the one that there is.
-    pub fn sized(&self, run: &[f64], time_s: &[f64], of: &Checked, share: &[f64]) -> Vec<f64> {
-        let sum = |(value, cosine): (f64, f64)| {
-            share.get(1).map_or(share[0] * value, |other| share[0] * value + other * cosine)
-        };
-        self.along(run, time_s, of).into_iter().map(sum).collect()
+            shape if shape.has_phase() => Columns::phased(variable().map(|u| self.value(u))),
+            _ => Columns::one(values().collect()),
+        }
     }
 
     /// As text, with the names of its scale, centre, phase, and power, level or lag.

@@ -1,7 +1,8 @@
 //! A term of a law: an amplitude in the unit of the target times shapes that are pure numbers.
 
-use crate::shape::{Factor, Free, Shape};
+use crate::shape::{Columns, Factor, Free, Shape};
 use crate::variable::{Checked, Enters};
+use crate::vector::times;
 
 /// One or two factors; the amplitude is linear and not held here.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,22 +84,17 @@ impl Term {
         for factor in &self.factors {
             let of = &variables[factor.variable];
             let (values, times_s) = values(of);
-            let values = factor.along(values, times_s, of).into_iter();
-            if factor.shape.has_phase() {
-                phased = Some(values.unzip());
-            } else {
-                for (envelope, (value, _)) in envelope.iter_mut().zip(values) {
-                    *envelope *= value;
-                }
+            let Columns { first, cosine } = factor.along(values, times_s, of);
+            match cosine {
+                Some(cosine) => phased = Some((first, cosine)),
+                None => times(&mut envelope, &first),
             }
         }
         match phased {
             None => vec![envelope],
             Some((mut sine, mut cosine)) => {
-                for ((sine, cosine), envelope) in sine.iter_mut().zip(&mut cosine).zip(&envelope) {
-                    *sine *= envelope;
-                    *cosine *= envelope;
-                }
+                times(&mut sine, &envelope);
+                times(&mut cosine, &envelope);
                 vec![sine, cosine]
             }
         }

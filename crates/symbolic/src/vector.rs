@@ -21,6 +21,13 @@ pub(crate) fn add(column: &mut [f64], share: f64, other: &[f64]) {
     }
 }
 
+/// Multiplies by another column, value by value.
+pub(crate) fn times(column: &mut [f64], other: &[f64]) {
+    for (value, other) in column.iter_mut().zip(other) {
+        *value *= other;
+    }
+}
+
 /// Takes out of a column what orthonormal ones hold of it.
 pub(crate) fn take_out(column: &mut [f64], basis: &[Vec<f64>]) {
     for q in basis {

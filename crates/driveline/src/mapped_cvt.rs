@@ -108,7 +108,7 @@ impl Plugin for MappedCvt {
         equation: "ω = map(v, F); P_in = F v η^(∓1) + T_0 ω",
         source: "Renius, Fundamentals of Tractor Design (2020), chapter 5; Guzzella and Onder, Introduction to Modeling and \
                  Control of Internal Combustion Engine Systems (2010); usual values from memory",
-        validity: "where the map was seen, and nowhere else; quasi-steady",
+        validity: "where the map was seen, and nowhere else, but at an engine speed that is kept or was recorded; quasi-steady",
         parameters: &PARAMETERS,
     };
 
@@ -148,8 +148,12 @@ impl Plugin for MappedCvt {
 }
 
 impl MappedCvt {
-    /// Engine speed at a speed and a force, both in the direction of driving; `None` where the map holds nothing.
-    fn engine_rad_s(&self, speed: f64, force: f64) -> Option<f64> {
+    /// Engine speed at a speed and a force, both in the direction of driving: the one that is kept by hand or was recorded, and else
+    /// the map's; `None` where the map holds nothing.
+    fn engine_rad_s(&self, speed: f64, force: f64, hand_rad_s: f64) -> Option<f64> {
+        if hand_rad_s > 0.0 {
+            return Some(hand_rad_s.clamp(self.engine.idle_rad_s(), self.engine.last_rad_s()));
+        }
         let within = |grid: &[f64], value: f64| value >= grid[0] && value <= grid[grid.len() - 1];
         if !(within(&self.speeds_m_s, speed) && within(&self.forces_n, force)) {
             return None;
@@ -180,10 +184,12 @@ impl MappedCvt {
     fn working(&self, demand: &Demand, at: &Circumstance, others: f64, way: f64) -> Option<(f64, f64)> {
         let (speed, wanted) = (demand.speed_m_s.abs(), demand.force_n * way);
         let wanted = wanted.clamp(-self.max_force_n, self.max_force_n);
-        let engine = self.engine_rad_s(speed, wanted)?;
+        let engine = self.engine_rad_s(speed, wanted, at.hand_rad_s)?;
         let spare = |force: f64, engine: f64| {
             let power = self.input_w(speed, force, engine) + others + self.engine.accessories_w(engine);
-            let most = self.engine.limit(at.boost) * self.engine.full_torque_n_m(engine) * engine;
+            let full_load_w = self.engine.limit(at.boost) * self.engine.full_torque_n_m(engine) * engine;
+            // A force that was recorded was there.
+            let most = if demand.recorded { f64::INFINITY } else { full_load_w };
             let least = -self.engine.friction_w(engine, at.friction_n_m);
             (most - power, power - least)
         };
@@ -191,7 +197,7 @@ impl MappedCvt {
         let short = |less: f64| {
             // Off the map on the way down nothing is known: the force falls to what is.
             let force = wanted - less;
-            self.engine_rad_s(speed, force).map_or(1.0, |engine| {
+            self.engine_rad_s(speed, force, at.hand_rad_s).map_or(1.0, |engine| {
                 let (above, below) = spare(force, engine);
                 if wanted > 0.0 { above } else { below }
             })
@@ -202,7 +208,7 @@ impl MappedCvt {
         } else {
             wanted
         };
-        Some((force, self.engine_rad_s(speed, force)?))
+        Some((force, self.engine_rad_s(speed, force, at.hand_rad_s)?))
     }
 }
 
@@ -229,7 +235,11 @@ impl Driveline for MappedCvt {
 
     fn deliver(&self, demand: &Demand, states: &[f64], rates: &mut [f64]) -> Delivery {
         let boost = states.first().copied().unwrap_or(0.0);
-        let at = Circumstance { boost, friction_n_m: demand.engine_friction_n_m, hand_rad_s: 0.0 };
+        let at = Circumstance {
+            boost,
+            friction_n_m: demand.engine_friction_n_m,
+            hand_rad_s: demand.engine_speed_rad_s,
+        };
         let alternator_w = self.engine.alternator_w(demand.auxiliary_power_w);
         let others = alternator_w + demand.shaft_power_w;
         let way = if demand.speed_m_s == 0.0 { demand.force_n.signum() } else { demand.speed_m_s.signum() };
@@ -270,7 +280,7 @@ impl Driveline for MappedCvt {
         let way = if demand.speed_m_s == 0.0 { demand.force_n.signum() } else { demand.speed_m_s.signum() };
         let (speed, force) = (demand.speed_m_s.abs(), demand.force_n * way);
         let force = force.clamp(-self.max_force_n, self.max_force_n);
-        self.engine_rad_s(speed, force).is_none().then(|| {
+        self.engine_rad_s(speed, force, demand.engine_speed_rad_s).is_none().then(|| {
             format!(
                 "the map of engine speeds holds nothing at {speed:.2} m/s and {force:.0} N, and is not extrapolated; it goes \
                  from {} to {} m/s and from {} to {} N",

@@ -37,6 +37,22 @@ fn between_four_points_the_engine_turns_at_their_mean() {
     assert!((delivery.readings.cvt_ratio - 152.5 * 0.93 / 3.0).abs() < 1e-9);
 }
 
+/// At 140 rad/s by hand, and 5 m/s, where the map holds nothing: 25 kN · 5 m/s / 0.85 + 30 · 140 = 151 259 W.
+#[test]
+fn an_engine_whose_speed_is_known_asks_no_map() {
+    let cvt = cvt();
+    let demand = Demand { engine_speed_rad_s: 140.0, ..asked(5.0, 25e3) };
+    let delivery = cvt.deliver(&demand, &STATES, &mut [0.0; 3]);
+    assert_eq!(cvt.exhausted(&demand, &delivery, &STATES), None);
+    assert_eq!(delivery.readings.engine_speed_rad_s, 140.0);
+    assert!((delivery.losses_w[1] - (151_258.82 - 125e3)).abs() < 0.01, "{}", delivery.losses_w[1]);
+    // The engine of the test gives no 400 kW, and what was recorded was there.
+    let hard = Demand { engine_speed_rad_s: 140.0, ..asked(5.0, 80e3) };
+    let force_n = |demand: &Demand| cvt.deliver(demand, &STATES, &mut [0.0; 3]).force_n;
+    assert!(force_n(&hard) < 75e3);
+    assert_eq!(force_n(&Demand { recorded: true, ..hard }), 80e3);
+}
+
 #[test]
 fn nothing_is_extrapolated() {
     let cvt = cvt();
@@ -103,7 +119,7 @@ fn a_map_may_stand_in_a_file_of_its_own_and_not_beside_its_lists() {
         cvt.settle(Path::new(".")).map(|()| cvt).map_err(|refusal| refusal.to_string())
     };
     let own = settled(&format!("map: ({lists}, covered_share: 0.9),")).unwrap();
-    assert_eq!(own.engine_rad_s(3.0, 25e3), cvt().engine_rad_s(3.0, 25e3));
+    assert_eq!(own.engine_rad_s(3.0, 25e3, 0.0), cvt().engine_rad_s(3.0, 25e3, 0.0));
     assert!(settled(&format!("map: ({lists}), {lists},")).unwrap_err().contains("`map` is given beside"));
     assert!(settled("").unwrap_err().contains("`map` is not given"));
 }

@@ -171,7 +171,11 @@ impl State<'_> {
     /// elsewhere.
     fn twin(&self, best: &Stand, place: usize) -> Option<Contest> {
         let part = &best.parts[place];
-        let twin = twin(self.id(&part.trial)).filter(|_| part.spread.is_some())?;
+        let beside = |id: &str| {
+            let others = best.parts.iter().enumerate().filter(|(other, _)| *other != place);
+            others.into_iter().any(|(_, other)| self.id(&other.trial) == id)
+        };
+        let twin = twin(self.id(&part.trial)).filter(|id| part.spread.is_some() && !beside(id))?;
         let trial = self.pool.trials.iter().find(|trial| {
             let cause = self.cause(trial);
             cause.is_function() && cause.id == twin

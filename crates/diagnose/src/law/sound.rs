@@ -32,6 +32,8 @@ pub fn is_map(law: &Law, target: Target, (placed, from_one_place): (bool, bool))
     const WAVE: &str = "sin";
     const FADES: [&str; 2] = ["exp(-", "/ (1 + "];
     const PULSE: &str = " - level";
+    /// Of a bump or a step: a wave within it goes on nowhere else.
+    const ABOUT_A_PLACE: &str = "((x - ";
     let is_place = |name: &str| name == "x" || from_one_place && name == "way";
     // In a run that goes once along its way places and times both say where it is.
     let only = |term: &[&str]| match target {
@@ -45,7 +47,8 @@ pub fn is_map(law: &Law, target: Target, (placed, from_one_place): (bool, bool))
     let fades = |text: &str| {
         FADES.iter().any(|fades| sizes.iter().any(|size| text.contains(&format!("{fades}{size}"))))
     };
-    let alone = terms.len() == 1 && law.names(WAVE) && !patches;
+    let bounded = law.text.contains(ABOUT_A_PLACE);
+    let alone = terms.len() == 1 && law.names(WAVE) && !patches && !bounded;
     !alone && terms.iter().zip(law.texts()).any(|(term, text)| only(term) && !fades(text))
 }
 
@@ -179,6 +182,8 @@ mod tests {
             assert!(!is_map(&law, Target::Force, (true, false)), "{text}");
         }
         assert!(!told("a1_n * sin(6.28 * x / x1_m + phase1_rad)", Target::Force));
+        let within = "a1_n * exp(-((x - x1_m) / x2_m)^2) * sin(6.28 * x / x3_m + phase1_rad)";
+        assert!(told(within, Target::Force));
         let pulse =
             |of: &str| format!("a1_n * 0.5 * (1 + tanh(20 * (sin(6.28 * ({of} - {of}1) / {of}2) - level1)))");
         assert!(told(&pulse("x"), Target::Force) && !told(&pulse("t"), Target::Force));

@@ -283,7 +283,7 @@ pub fn outside(runs: &[Recorded], events: &[Event], margin_s: f64) -> Vec<Vec<bo
         .collect()
 }
 
-/// What a spell is called: brakes where the vehicle slows down without being driven, a pull at the hitch otherwise.
+/// What a spell is called, by what is on average within it.
 fn name(runs: &[Recorded], event: &Event) -> &'static str {
     let drive = &runs[event.run];
     let time_s = drive.measured.trace.time_s();
@@ -292,13 +292,21 @@ fn name(runs: &[Recorded], event: &Event) -> &'static str {
     let mean = |of: &dyn Fn(usize) -> f64| {
         within.iter().map(|index| of(*index)).sum::<f64>() / within.len().max(1) as f64
     };
-    let slowing = mean(&|index| drive.motion.slope[index]) < BRAKED_M_S2;
-    let driven = drive.force_n.as_ref().map_or(0.0, |force| mean(&|index| force[index]));
-    if slowing && driven < 0.25 * event.force_n { "braking" } else { "drawbar_load" }
+    let switch = drive.measured.trace.get("brake").map(|switch| mean(&|index| switch[index]));
+    let slope_m_s2 = mean(&|index| drive.motion.slope[index]);
+    let driven_n = drive.force_n.as_ref().map_or(0.0, |force| mean(&|index| force[index]));
+    called(switch, slope_m_s2, driven_n / event.force_n)
+}
+
+/// Brakes where a switch says so, and without one where the vehicle slows down without being driven, but for this share of what
+/// holds it back; a pull at the hitch otherwise.
+fn called(switch: Option<f64>, slope_m_s2: f64, driven: f64) -> &'static str {
+    let braked = switch.map_or(slope_m_s2 < BRAKED_M_S2 && driven < 0.25, |on| on >= 0.5);
+    if braked { "braking" } else { "drawbar_load" }
 }
 
 /// Spells by what they are called. Few of the one kind among many of the other are of the same kind, and no implement is let
-/// down and lifted again at once.
+/// down and lifted again at once; where a switch is logged it says which is which.
 pub fn named(runs: &[Recorded], events: &[Event]) -> Vec<(&'static str, Vec<Event>)> {
     /// Fewer than this share are few.
     const FEW: f64 = 0.25;
@@ -306,10 +314,11 @@ pub fn named(runs: &[Recorded], events: &[Event]) -> Vec<(&'static str, Vec<Even
     const AT_ONCE_S: f64 = 3.0;
     let (braked, mut pulled): (Vec<Event>, Vec<Event>) =
         events.iter().cloned().partition(|event| name(runs, event) == "braking");
+    let switched = runs.iter().any(|run| run.measured.trace.get("brake").is_some());
     pulled.retain(|event| event.to_s - event.from_s > AT_ONCE_S);
     let events: Vec<Event> =
         events.iter().filter(|event| braked.contains(event) || pulled.contains(event)).cloned().collect();
-    let few = |one: &[Event]| (one.len() as f64) < FEW * events.len() as f64;
+    let few = |one: &[Event]| one.is_empty() || !switched && (one.len() as f64) < FEW * events.len() as f64;
     if events.is_empty() {
         Vec::new()
     } else if few(&pulled) {
@@ -318,5 +327,19 @@ pub fn named(runs: &[Recorded], events: &[Event]) -> Vec<(&'static str, Vec<Even
         vec![("drawbar_load", events)]
     } else {
         vec![("braking", braked), ("drawbar_load", pulled)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::called;
+
+    /// A driver who presses both pedals brakes, and one who lets off the throttle at a hitch that pulls does not.
+    #[test]
+    fn a_switch_says_which_spell_is_braked() {
+        assert_eq!(called(None, -1.0, 0.0), "braking");
+        assert_eq!(called(None, -1.0, 0.6), "drawbar_load");
+        assert_eq!(called(Some(1.0), -1.0, 0.6), "braking");
+        assert_eq!(called(Some(0.1), -1.0, 0.0), "drawbar_load");
     }
 }

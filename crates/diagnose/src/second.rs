@@ -2,7 +2,7 @@
 //!
 //! A map of the ground is free to be almost anything along a path, and takes the place of what any other cause does on average
 //! there; a clock that runs apart from the others moves the begin of a run little and its end much, and does a part of what a
-//! late speed does; and another scale of a force or a speed is all that goes with it, before a law that nobody listed can say what
+//! late speed does; a load that comes and goes in time follows what goes with the acceleration; and another scale of a force or a speed is all that goes with it, before a law that nobody listed can say what
 //! is missing, since sensors come first. A search that begins with one of them may not come back. Where one is claimed and looks
 //! like that, by lying off nought all along, by leaving more than noise or, of a scale, by standing beside physics, the runs are
 //! looked at once more without it, and the runs that were held out decide.
@@ -19,10 +19,14 @@ const CLOCK: &str = "clock_drift";
 const LATE: &str = "latency";
 /// What goes with all of a force, or of a speed.
 const SCALES: [&str; 2] = ["force_scale", "speed_scale"];
+/// What may come and go in time as it likes, in the place of a law that hangs on what it moves.
+const LOAD: &str = "payload_change";
 /// A map with one value.
 const LEVEL: &str = "rolling_resistance";
 /// What is left is this many times the noise, and more.
 const MORE_THAN_NOISE: f64 = 1.5;
+/// A course of a load that leaves so many times the noise is none of it.
+const MUCH_MORE: f64 = 4.0;
 /// The error with another set of causes has to be less than this share of what it is with the first.
 const BETTER: f64 = 0.85;
 
@@ -40,7 +44,9 @@ fn doubtful(findings: &[FindingReport], lack_of_fit: f64) -> Vec<Vec<&'static st
     let scales = SCALES.into_iter().filter(|scale| physics && found(scale).is_some_and(sought));
     // Both together follow what pushes a vehicle to and fro.
     let both = clock.filter(|_| found(LATE).is_some_and(sought)).map(|clock| vec![clock, LATE]);
-    map.into_iter().chain(clock).chain(scales).map(|id| vec![id]).chain(both).collect()
+    let is_course = |load: &FindingReport| load.parameters.iter().any(|one| one.name.ends_with("_rms"));
+    let load = (lack_of_fit > MUCH_MORE && found(LOAD).is_some_and(is_course)).then_some(LOAD);
+    map.into_iter().chain(clock).chain(scales).chain(load).map(|id| vec![id]).chain(both).collect()
 }
 
 /// A map follows the runs that it was made of; what stands in its place may leave so many times the error in those.
@@ -110,9 +116,9 @@ pub fn opinion(
 
 #[cfg(test)]
 mod tests {
-    use super::{CLOCK, LATE, LEVEL, MAP, SCALES, doubtful, is_plainer, is_renamed};
+    use super::{CLOCK, LATE, LEVEL, LOAD, MAP, SCALES, doubtful, is_plainer, is_renamed};
     use crate::told::report::FindingKind::{Artefact, Physics};
-    use crate::told::report::finding;
+    use crate::told::report::{ParameterReport, finding};
 
     #[test]
     fn a_map_by_its_other_name_is_the_same_map() {
@@ -131,6 +137,23 @@ mod tests {
         assert_eq!(doubtful(&[own(LATE), own(CLOCK)], 9.0), [vec![CLOCK], vec![CLOCK, LATE]]);
         assert_eq!(doubtful(&[own(CLOCK)], 9.0), [vec![CLOCK]]);
         assert!(doubtful(&[own(LATE), own(CLOCK)], 1.0).is_empty() && doubtful(&[own(LATE)], 9.0).is_empty());
+    }
+
+    /// A load that was put on once is one number.
+    #[test]
+    fn a_course_of_a_load_that_leaves_much_is_doubted() {
+        let load = |parameter: &str| {
+            let mut load = finding(Physics, LOAD, None);
+            load.parameters = vec![ParameterReport {
+                name: parameter.to_owned(),
+                value: 900.0,
+                ci95: [800.0, 1000.0],
+                unit: "kg".to_owned(),
+            }];
+            [load]
+        };
+        assert_eq!(doubtful(&load("mass_kg_rms"), 9.0), [[LOAD]]);
+        assert!(doubtful(&load("mass_kg_rms"), 3.0).is_empty() && doubtful(&load("mass_kg"), 9.0).is_empty());
     }
 
     /// A sensor at fault by itself is one, and beside physics it may be what no listed cause said.

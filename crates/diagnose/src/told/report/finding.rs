@@ -212,11 +212,12 @@ pub fn verdict(findings: &[FindingReport], fit: &Fit, doubts: &Doubts) -> Verdic
     let rough = far && (!timed || far_fitted) || says_little;
     let trifling = courses && first.share_of_mismatch < LITTLE && fit.lack_of_fit > BEYOND;
     let doubtful = claims && (rough || fit.grows() && !courses || slight || trifling) || strained;
-    if first.kind == FindingKind::Unlisted && !first.is_doubtful() && !doubtful {
+    let may_be_physics = findings.iter().any(FindingReport::may_be_physics);
+    if first.kind == FindingKind::Unlisted && !first.is_doubtful() && !doubtful && !may_be_physics {
         Verdict::Unlisted
     } else if first.is_doubtful()
         || doubtful
-        || findings.iter().any(FindingReport::may_be_physics)
+        || may_be_physics
         || !any(FindingKind::Artefact) && findings.iter().any(FindingReport::is_doubtful)
     {
         Verdict::CannotTell
@@ -544,7 +545,9 @@ pub mod tests {
         let scale = |rival| finding(Artefact, "force_scale", Some(rival));
         assert_eq!(verdict(&[sure(), scale("mass")]), Verdict::CannotTell);
         assert_eq!(verdict(&[sure(), scale("speed_scale")]), Verdict::Both);
-        assert_eq!(verdict(&[finding(FindingKind::Unlisted, "unlisted", None), sure()]), Verdict::Unlisted);
+        let law = || finding(FindingKind::Unlisted, "unlisted", None);
+        assert_eq!(verdict(&[law(), sure()]), Verdict::Unlisted);
+        assert_eq!(verdict(&[law(), scale("mass")]), Verdict::CannotTell);
         assert_eq!(
             verdict(&[finding(FindingKind::Unlisted, "unlisted", Some("grade"))]),
             Verdict::CannotTell

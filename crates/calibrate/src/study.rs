@@ -532,6 +532,7 @@ fn measured(
         Some([first, .., last]) if last < first => *first,
         _ => length_m,
     });
+    notes.extend(beyond_the_terrain(model.terrain.extent_m(), &trace, reversed_from_m));
     let how = Replay { drive, also, window_s, smoothing_s, step_s: settings.step_s, reversed_from_m };
     let compared = compared(&trace, smoothing_s, settings.least_acceleration_m_s2);
     let mut measured =
@@ -539,6 +540,32 @@ fn measured(
     let followed = measured.followed();
     measured.compared.iter_mut().zip(followed).for_each(|(compared, followed)| *compared &= !followed);
     Ok(measured)
+}
+
+/// What there is to say of a run that goes further than its terrain is known, of which the slope at the end goes on.
+fn beyond_the_terrain(
+    extent_m: Option<(f64, f64)>,
+    trace: &Trace,
+    reversed_from_m: Option<f64>,
+) -> Option<String> {
+    /// A place is not known better than this [m].
+    const ABOUT_M: f64 = 5.0;
+    let (begin_m, end_m) = extent_m?;
+    let (far, falls) = match (trace.get("position_m"), trace.get("speed_m_s")) {
+        (Some(position), _) => (position.to_vec(), position.last() < position.first()),
+        (None, Some(speed)) => (travelled(trace.time_s(), speed), false),
+        _ => return None,
+    };
+    let place = |far: &f64| reversed_from_m.filter(|_| !falls).map_or(*far, |from_m| from_m - far);
+    let places = || far.iter().map(place).filter(|place| place.is_finite());
+    let (least_m, most_m) =
+        (places().fold(f64::INFINITY, f64::min), places().fold(f64::NEG_INFINITY, f64::max));
+    (least_m < begin_m - ABOUT_M || most_m > end_m + ABOUT_M).then(|| {
+        format!(
+            "driven from {least_m:.0} to {most_m:.0} m of a terrain that is known from {begin_m:.0} to {end_m:.0} m: \
+             beyond its ends it is taken to go on as it does there"
+        )
+    })
 }
 
 /// How far the farthest run of a path came [m].
@@ -677,7 +704,29 @@ pub fn rms(run: &Measured, modelled: &Trace, name: &str) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::smoothed_s;
+    use super::{beyond_the_terrain, smoothed_s};
+    use headland_trace::{Origin, Trace};
+
+    /// 60 m at 10 m/s on a profile of 50 m, and back from its end by an odometer and by a chainage.
+    #[test]
+    fn a_run_that_leaves_its_terrain_is_told() {
+        let trace = |places: fn(f64) -> f64| {
+            let mut trace = Trace::new((0..7).map(f64::from).collect()).unwrap();
+            trace.push("speed_m_s", vec![10.0; 7], Origin::Measured).unwrap();
+            let places = (0..7).map(|second| places(10.0 * f64::from(second))).collect();
+            trace.push("position_m", places, Origin::Measured).unwrap();
+            trace
+        };
+        let told = |trace: &Trace, from_m| beyond_the_terrain(Some((0.0, 50.0)), trace, from_m);
+        let grows = trace(|far| far);
+        assert!(told(&grows, None).unwrap().contains("from 0 to 60 m"));
+        assert!(told(&grows, Some(50.0)).unwrap().contains("from -10 to 50 m"));
+        assert!(told(&trace(|far| 50.0 - 0.8 * far), Some(50.0)).is_none());
+        assert!(beyond_the_terrain(None, &grows, None).is_none());
+        let mut unplaced = grows;
+        unplaced.remove("position_m");
+        assert!(told(&unplaced, None).unwrap().contains("to 60 m"));
+    }
 
     #[test]
     fn a_coarse_log_is_smoothed_over_as_few_samples_as_make_a_parabola() {

@@ -41,11 +41,12 @@ pub fn unlisted(
     found: Found,
 ) -> Result<Told, DiagnoseError> {
     /// Where power is drawn, and lost upstream of a measured force; what pulls where no force was measured.
-    const POWERS: [(Kind, Target); 5] = [
+    const POWERS: [(Kind, Target); 6] = [
         (Kind::Shaft, Target::Force),
         (Kind::Shaft, Target::Power),
         (Kind::Shaft, Target::Share),
         (Kind::Battery, Target::Power),
+        (Kind::Fuel, Target::Share),
         (Kind::Fuel, Target::Power),
     ];
     let (found, of_forces) = among(case, system, pool, found, &FORCES)?;
@@ -86,6 +87,11 @@ fn among(
             cause.by_run || !consumes && (cause.form == Form::OverTime || part.spread.is_some())
         });
         if kind == Kind::Shaft && if forced { target == Target::Force } else { pulled } {
+            continue;
+        }
+        // A share that fuel alone tells of is one of a force that was measured, and sought in the place of a listed loss of the drive.
+        let lost = |part: &Part| case.causes[part.trial.cause].upstream;
+        if kind == Kind::Fuel && target == Target::Share && !(forced && found.stand.parts.iter().any(lost)) {
             continue;
         }
         // A consumer that is switched with time may take any course: where that is long, no law says more.

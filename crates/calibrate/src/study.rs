@@ -542,6 +542,18 @@ fn measured(
     Ok(measured)
 }
 
+/// Where a run is on its path, sample by sample [m]: as it was recorded, or as far as these speeds [m/s] bring it. Places that grow along
+/// a run from the end of its path, here [m], are an odometer's; those that fall are the path's own.
+pub fn places_m(trace: &Trace, speeds_m_s: &[f64], reversed_from_m: Option<f64>) -> Vec<f64> {
+    let back = |far: &[f64], from_m: f64| far.iter().map(|far| from_m - far).collect();
+    match (trace.get("position_m"), reversed_from_m) {
+        (Some(position), Some(from_m)) if position.last() >= position.first() => back(position, from_m),
+        (Some(position), _) => position.to_vec(),
+        (None, Some(from_m)) => back(&travelled(trace.time_s(), speeds_m_s), from_m),
+        (None, None) => travelled(trace.time_s(), speeds_m_s),
+    }
+}
+
 /// What there is to say of a run that goes further than its terrain is known, of which the slope at the end goes on.
 fn beyond_the_terrain(
     extent_m: Option<(f64, f64)>,
@@ -551,13 +563,8 @@ fn beyond_the_terrain(
     /// A place is not known better than this [m].
     const ABOUT_M: f64 = 5.0;
     let (begin_m, end_m) = extent_m?;
-    let (far, falls) = match (trace.get("position_m"), trace.get("speed_m_s")) {
-        (Some(position), _) => (position.to_vec(), position.last() < position.first()),
-        (None, Some(speed)) => (travelled(trace.time_s(), speed), false),
-        _ => return None,
-    };
-    let place = |far: &f64| reversed_from_m.filter(|_| !falls).map_or(*far, |from_m| from_m - far);
-    let places = || far.iter().map(place).filter(|place| place.is_finite());
+    let places_m = places_m(trace, trace.get("speed_m_s")?, reversed_from_m);
+    let places = || places_m.iter().copied().filter(|place| place.is_finite());
     let (least_m, most_m) =
         (places().fold(f64::INFINITY, f64::min), places().fold(f64::NEG_INFINITY, f64::max));
     (least_m < begin_m - ABOUT_M || most_m > end_m + ABOUT_M).then(|| {

@@ -167,7 +167,7 @@ impl Columns {
 
 /// Whether the formula takes the absolute value: where a root of a negative number would stand, or where a law of size
 /// meets values of both signs.
-pub(crate) fn takes_size(shape: Shape, of: &Checked) -> bool {
+fn takes_size(shape: Shape, of: &Checked) -> bool {
     // A drive loses both ways, whether or not it was seen to hold back.
     let lost = of.known.name == DRIVE;
     let both = of.negative && of.known.kind != Kind::Level || lost;
@@ -222,14 +222,19 @@ impl Factor {
         (value, 0.0)
     }
 
+    /// Its variable along a run, or the size of that where it takes it.
+    pub fn argument<'a>(&self, run: &'a [f64], of: &Checked) -> impl Iterator<Item = f64> + use<'a> {
+        let size = takes_size(self.shape, of);
+        run.iter().map(move |u| if size { u.abs() } else { *u })
+    }
+
     /// Its values along a run, at times [s] that what it remembers goes by: the sine, and the cosine where it has a phase.
     pub fn along(&self, run: &[f64], time_s: &[f64], of: &Checked) -> Columns {
-        let size = takes_size(self.shape, of);
-        let variable = || run.iter().map(|u| if size { u.abs() } else { *u });
-        let values = || variable().map(|u| self.value(u).0);
+        let argument = || self.argument(run, of);
+        let values = || argument().map(|u| self.value(u).0);
         match self.shape {
             Shape::Latch | Shape::Unlatch => {
-                let on = latched(variable(), self.centre, self.centre - self.scale);
+                let on = latched(argument(), self.centre, self.centre - self.scale);
                 Columns::one(if self.shape == Shape::Latch {
                     on
                 } else {
@@ -241,7 +246,7 @@ impl Factor {
                 let late = lagged(values(), time_s, lag_s);
                 Columns::one(values().zip(late).map(|(value, late)| value - late).collect())
             }
-            shape if shape.has_phase() => Columns::phased(variable().map(|u| self.value(u))),
+            shape if shape.has_phase() => Columns::phased(argument().map(|u| self.value(u))),
             _ => Columns::one(values().collect()),
         }
     }

@@ -3,7 +3,7 @@
 //! With z = (u − c)/s a scale moves by ln s, so that s ∂f/∂s = −z f′(z), and a centre by its share of the spread. What remembers has
 //! no closed form here, and is taken at both sides of where it is.
 
-use crate::shape::{Columns, EDGE, Factor, Free, Shape, takes_size};
+use crate::shape::{Columns, EDGE, Factor, Free, Shape};
 use crate::variable::Checked;
 use std::f64::consts::TAU;
 
@@ -13,18 +13,17 @@ const NUDGE: f64 = 1e-4;
 impl Factor {
     /// The derivative of [`Factor::along`] by one of its free constants.
     pub fn slope(&self, free: Free, run: &[f64], time_s: &[f64], of: &Checked) -> Columns {
-        let size = takes_size(self.shape, of);
-        let variable = || run.iter().map(|u| if size { u.abs() } else { *u });
+        let argument = || self.argument(run, of);
         match self.shape {
             Shape::Latch | Shape::Unlatch | Shape::Lag(..) | Shape::Ahead(_) => {
                 self.difference(free, run, time_s, of)
             }
-            Shape::Wave => Columns::phased(variable().map(|u| {
+            Shape::Wave => Columns::phased(argument().map(|u| {
                 let by = TAU * u / of.spread();
                 let (sine, cosine) = (TAU * u / self.scale).sin_cos();
                 (by * cosine, -by * sine)
             })),
-            _ => Columns::one(variable().map(|u| self.steepness(free, u, of.spread())).collect()),
+            _ => Columns::one(argument().map(|u| self.steepness(free, u, of.spread())).collect()),
         }
     }
 

@@ -172,8 +172,8 @@ impl State<'_> {
     fn twin(&self, best: &Stand, place: usize) -> Option<Contest> {
         let part = &best.parts[place];
         let beside = |id: &str| {
-            let others = best.parts.iter().enumerate().filter(|(other, _)| *other != place);
-            others.into_iter().any(|(_, other)| self.id(&other.trial) == id)
+            let mut others = best.parts.iter().enumerate().filter(|(other, _)| *other != place);
+            others.any(|(_, other)| self.id(&other.trial) == id)
         };
         let twin = twin(self.id(&part.trial)).filter(|id| part.spread.is_some() && !beside(id))?;
         let trial = self.pool.trials.iter().find(|trial| {

@@ -4,9 +4,9 @@ use crate::balances::balance::{FUEL_J_KG, Kind};
 use crate::balances::steps::{Open, step_s};
 use crate::runs::standin::Prepared;
 use headland_calibrate::statistics::{quantile_of_sorted, sorted};
-use headland_calibrate::study::{Measured, Study};
+use headland_calibrate::study::{Measured, Study, places_m};
 use headland_plugin::Shaft;
-use headland_sim::{Drive, LocalFit, Model, local_fit, travelled};
+use headland_sim::{Drive, LocalFit, Model, local_fit};
 use headland_trace::{Channel, Origin, Trace};
 
 /// One recorded run with its motion.
@@ -79,7 +79,7 @@ pub fn recorded(study: &Study, prepared: &Prepared, model: &Model) -> Vec<Record
         let engine = engine(&measured.trace, model);
         all.push(Recorded {
             number: all.len(),
-            position_m: position(measured, &motion),
+            position_m: places_m(&measured.trace, &motion.value, measured.how.reversed_from_m),
             placed: false,
             acceleration_m_s2: motion.slope.clone(),
             force_n: force(&measured.trace, model, &motion.value),
@@ -321,23 +321,4 @@ fn charge(trace: &Trace, model: &Model) -> Option<f64> {
     let charge = trace.get("state_of_charge")?;
     let steps = charge.windows(2).filter(|pair| pair[0] != pair[1] && pair[1].is_finite()).count();
     if steps < FEWEST_STEPS { None } else { model.driveline.battery_capacity_j() }
-}
-
-/// Where a run is, sample by sample [m].
-fn position(measured: &Measured, motion: &LocalFit) -> Vec<f64> {
-    let trace = &measured.trace;
-    let from_m = measured.how.reversed_from_m;
-    match (trace.get("position_m"), from_m) {
-        (Some(position), Some(from_m)) if position.last() >= position.first() => {
-            position.iter().map(|position| from_m - position).collect()
-        }
-        (Some(position), _) => position.to_vec(),
-        (None, from_m) => {
-            let far = travelled(trace.time_s(), &motion.value);
-            match from_m {
-                Some(from_m) => far.iter().map(|far| from_m - far).collect(),
-                None => far,
-            }
-        }
-    }
 }

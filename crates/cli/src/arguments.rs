@@ -285,7 +285,8 @@ pub struct ValidateOptions {
 /// Options of `headland check`.
 #[derive(Args, Debug)]
 pub struct CheckOptions {
-    /// Scenarios and recording descriptions
+    /// Scenarios, comparisons and recording descriptions; one scenario and one recording are held together as well: which
+    /// balances they make, and which runs a diagnosis would hold out
     #[arg(value_name = "FILE.ron", required = true)]
     pub files: Vec<PathBuf>,
 }

@@ -25,12 +25,14 @@ mod second;
 mod single_runs;
 mod so_far;
 mod soundness;
+mod together;
 mod told;
 
 pub use balances::balance::Kind;
 pub use case::{Options, Progress, Silent};
 pub use error::DiagnoseError;
 pub use experiment::Experiment;
+pub use together::{Together, together};
 pub use told::map::{Mismatch, Over};
 pub use told::report::{
     Calibrated, Diagnosed, Diagnosis, FindingKind, FindingReport, Fit, FitRuns, Interval, LeftOver,

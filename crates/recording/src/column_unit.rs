@@ -30,6 +30,17 @@ const TOKENS: &[(&str, &str)] = &[
     ("psi", "psi"),
 ];
 
+/// Endings of two words, whose last one alone would be another unit.
+const PAIRS: &[(&str, &str)] = &[
+    ("_km_h", "km/h"),
+    ("_kg_h", "kg/h"),
+    ("_g_s", "g/s"),
+    ("_g_h", "g/h"),
+    ("_l_h", "L/h"),
+    ("_m_min", "m/min"),
+    ("_deg_s", "deg/s"),
+];
+
 /// A header, taken apart.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Header {
@@ -51,6 +62,14 @@ impl Header {
                 let read = if unit.is_empty() { None } else { Some(unit_in_words(unit)) };
                 return Self { stem: name.trim().to_owned(), unit: read };
             }
+        }
+        let lower = text.to_lowercase();
+        // The ending is of one byte a letter, so that it is as long in the header as in small letters.
+        if let Some((ending, unit)) = PAIRS.iter().find(|(ending, _)| lower.ends_with(ending))
+            && let Some(name) = text.get(..text.len().saturating_sub(ending.len()))
+            && let Ok(unit) = parse_unit(unit)
+        {
+            return Self { stem: name.to_owned(), unit: Some(Ok(unit)) };
         }
         if let Some(unit) = unit_of_name(text) {
             return Self { stem: stem(text).to_owned(), unit: Some(Ok(unit)) };
@@ -105,6 +124,17 @@ mod tests {
         assert_eq!(Header::of("Dyno_Spd[mph]").stem, "Dyno_Spd");
         assert_eq!(Header::of("Ambient Temperature [°C]").key(), "ambient_temperature");
         assert_eq!(Header::of("speed_m_s").stem, "speed");
+    }
+
+    #[test]
+    fn units_of_two_words_end_names_too() {
+        for (ending, unit) in PAIRS {
+            let header = Header::of(&format!("Fuel{ending}"));
+            assert_eq!(header.unit, Some(Ok(parse_unit(unit).unwrap())), "{ending}");
+            assert_eq!(header.stem, "Fuel");
+        }
+        assert_eq!(Header::of("FUEL_G_S").unit.unwrap().unwrap().to_si(1.0), 1e-3);
+        assert_eq!(Header::of("fuel_kg_s").unit.unwrap().unwrap().to_si(1.0), 1.0);
     }
 
     #[test]

@@ -95,6 +95,7 @@ pub fn check(path: &Path) -> Result<Check, RecordingError> {
             rows: log.traces.iter().map(|(_, trace)| trace.len()).sum(),
         });
     }
+    look::merge(&mut notices);
     Ok(Check { about: described.text.about.clone(), runs, notices })
 }
 

@@ -170,23 +170,49 @@ impl Document {
     /// # Errors
     /// What [`Document::of_text`] refuses.
     pub fn with_effect(&self, effect: &str) -> Result<Self, ScenarioError> {
-        let (at, piece) = match self.find("effects") {
+        match self.find("effects") {
             Some(Node { shape: Shape::List(values), span }) => match values.last() {
-                Some(last) => (last.span.end, format!(", {effect}")),
-                None => (span.start + 1, effect.to_owned()),
+                Some(last) => self.inserted(last.span.end, &format!(", {effect}")),
+                None => self.inserted(span.start + 1, effect),
             },
-            _ => match &self.tree.shape {
-                Shape::Struct { fields, .. } => {
-                    let end = fields.last().map_or(self.tree.span.end - 1, |field| field.value.span.end);
-                    (end, format!(",\n    effects: [{effect}]"))
-                }
-                _ => (self.tree.span.end, String::new()),
-            },
-        };
+            _ => self.with_field("effects", &format!("[{effect}]")),
+        }
+    }
+
+    /// A copy whose replay is told just these recorded circumstances, by their names in a scenario.
+    ///
+    /// # Errors
+    /// What [`Document::of_text`] refuses.
+    pub fn with_inputs(&self, names: &[String]) -> Result<Self, ScenarioError> {
+        let list = format!("[{}]", names.join(", "));
+        if self.find("replay.inputs").is_some() {
+            return self.replaced(&[("replay.inputs", list)]);
+        }
+        match self.find("replay") {
+            Some(Node { shape: Shape::Struct { fields, .. }, .. }) if !fields.is_empty() => {
+                self.inserted(fields[fields.len() - 1].value.span.end, &format!(", inputs: {list}"))
+            }
+            Some(_) => self.replaced(&[("replay", format!("(inputs: {list})"))]),
+            None => self.with_field("replay", &format!("(inputs: {list})")),
+        }
+    }
+
+    /// A copy with another field behind all others.
+    fn with_field(&self, name: &str, value: &str) -> Result<Self, ScenarioError> {
+        match &self.tree.shape {
+            Shape::Struct { fields, .. } => {
+                let end = fields.last().map_or(self.tree.span.end - 1, |field| field.value.span.end);
+                self.inserted(end, &format!(",\n    {name}: {value}"))
+            }
+            _ => Ok(self.clone()),
+        }
+    }
+
+    fn inserted(&self, at: usize, piece: &str) -> Result<Self, ScenarioError> {
         let mut builder = Builder { text: String::new(), segments: Vec::new() };
         self.copy(&mut builder, 0..at);
         let origin = self.main.text.len();
-        builder.push(&piece, &self.main, origin, true);
+        builder.push(piece, &self.main, origin, true);
         self.copy(&mut builder, at..self.text.len());
         builder.document(self.folder.clone(), Arc::clone(&self.main))
     }

@@ -1,7 +1,7 @@
 //! What a scenario says, and what a mistake in it gets.
 
 use crate::{Scenario, ScenarioError};
-use headland_sim::{Phase, Resistance, Until};
+use headland_sim::{Inputs, Phase, Resistance, Until};
 use std::path::Path;
 
 const GOOD: &str = r#"(
@@ -84,6 +84,29 @@ fn an_effect_can_be_added() {
     let twice = text.with_effect("another()").unwrap();
     assert!(twice.text().contains("from_rad: 0.0), another()]"));
     let _ = registry;
+}
+
+#[test]
+fn a_replay_can_be_told_more() {
+    let scenario = read(GOOD).unwrap();
+    let inputs = ["Heading".to_owned(), "EngineSpeed".to_owned()];
+    let asked = |text: &str| {
+        let document = read(text).unwrap().document().with_inputs(&inputs).unwrap();
+        let told = Scenario::of(document.clone(), &headland_stock::registry()).unwrap();
+        assert_eq!(
+            told.replay.inputs,
+            Some(vec![Inputs::Heading, Inputs::EngineSpeed]),
+            "{}",
+            document.text()
+        );
+        told.replay
+    };
+    assert_eq!(scenario.replay.inputs, None);
+    assert_eq!(asked(GOOD).drive, None);
+    let end = GOOD.trim_end().strip_suffix(')').unwrap();
+    assert_eq!(asked(&format!("{end}    replay: (drive: Speed, window_s: 5.0),\n)\n")).window_s, Some(5.0));
+    asked(&format!("{end}    replay: (inputs: [Wind, Roll]),\n)\n"));
+    asked(&format!("{end}    replay: (),\n)\n"));
 }
 
 #[test]

@@ -5,11 +5,12 @@ use crate::command::run::told_remark;
 use crate::failure::{Failure, told_recording};
 use crate::say::Say;
 use headland_batch::{Comparison, Plan};
+use headland_diagnose::{DiagnoseError, Kind, Together};
 use headland_plugin::Registry;
 use headland_scenario::{Document, Scenario};
 use serde::Serialize;
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Serialize)]
 struct Checked {
@@ -23,7 +24,8 @@ struct Checked {
 
 /// Runs the command.
 pub fn check(registry: &Registry, options: &CheckOptions, say: Say) -> Result<(), Failure> {
-    let checked: Vec<Checked> = options.files.iter().map(|path| check_one(registry, path)).collect();
+    let mut checked: Vec<Checked> = options.files.iter().map(|path| check_one(registry, path)).collect();
+    checked.extend(pair(registry, &options.files, &checked));
     let mut text = String::new();
     for one in &checked {
         let _ = writeln!(
@@ -41,9 +43,70 @@ pub fn check(registry: &Registry, options: &CheckOptions, say: Say) -> Result<()
     say.result(&text, &checked)?;
     let wrong = checked.iter().filter(|one| !one.ok).count();
     if wrong > 0 {
-        return Err(Failure::Requirement(format!("{wrong} of {} files are wrong", checked.len())));
+        return Err(Failure::Requirement(told_wrong(&checked, options.files.len())));
     }
     Ok(())
+}
+
+fn told_wrong(checked: &[Checked], files: usize) -> String {
+    let wrong = checked[..files].iter().filter(|one| !one.ok).count();
+    if wrong == 0 {
+        return "scenario and recording do not go together".to_owned();
+    }
+    format!("{wrong} of {files} files are wrong")
+}
+
+/// One scenario and one recording that are right by themselves are held together as well.
+fn pair(registry: &Registry, files: &[PathBuf], checked: &[Checked]) -> Option<Checked> {
+    let only = |kind: &str| {
+        let mut of = files.iter().zip(checked).filter(|(_, one)| one.kind == kind);
+        let (path, one) = of.next()?;
+        (of.next().is_none() && one.ok).then_some(path.as_path())
+    };
+    let (scenario, recording) = (only("scenario")?, only("recording")?);
+    let file = format!("{} with {}", scenario.display(), recording.display());
+    let of = |ok, told, remarks| Checked { file, kind: "together", ok, told, remarks };
+    Some(match held_together(registry, scenario, recording) {
+        Ok(one) => of(true, told_together(&one), one.notes),
+        Err(failure) => of(false, failure.to_string(), Vec::new()),
+    })
+}
+
+fn held_together(registry: &Registry, scenario: &Path, recording: &Path) -> Result<Together, Failure> {
+    let scenario = Scenario::read(scenario, registry).map_err(|error| Failure::Input(error.told()))?;
+    let recording =
+        headland_recording::load(recording).map_err(|error| Failure::Input(told_recording(&error)))?;
+    match headland_diagnose::together(&scenario, &recording, registry) {
+        Err(error @ DiagnoseError::NoBalance { .. }) => Ok(Together {
+            balances: Vec::new(),
+            fitted: Vec::new(),
+            held_out: Vec::new(),
+            notes: vec![error.to_string()],
+        }),
+        other => Ok(other?),
+    }
+}
+
+fn told_together(one: &Together) -> String {
+    if one.balances.is_empty() {
+        return "no balance".to_owned();
+    }
+    let balance = |kind: &Kind| format!("{} ({})", kind.name(), kind.sides());
+    let balances: Vec<String> = one.balances.iter().map(balance).collect();
+    format!(
+        "balances: {}; a diagnosis fits {} and holds out {}",
+        balances.join(", "),
+        listed(&one.fitted),
+        listed(&one.held_out)
+    )
+}
+
+fn listed(runs: &[String]) -> String {
+    match runs {
+        [] => "no run".to_owned(),
+        [one] => format!("run {one}"),
+        many => format!("{} runs ({})", many.len(), many.join(", ")),
+    }
 }
 
 fn check_one(registry: &Registry, path: &Path) -> Checked {

@@ -63,6 +63,27 @@ fn check_reads_scenarios_and_recordings_and_counts_what_is_wrong() {
 }
 
 #[test]
+fn check_holds_one_scenario_and_one_recording_together() {
+    let place = Place::new();
+    let (scenario, recording) = (place.path("scenario.ron"), place.path("recording.ron"));
+    let told = done(&["check", &scenario, &recording]);
+    assert!(told.contains("balances: motion (forces against acceleration)"), "{told}");
+    assert!(!done(&["check", &scenario, &scenario, &recording]).contains("together"));
+    let text = std::fs::read_to_string(&scenario).unwrap();
+    let end = text.trim_end().strip_suffix(')').unwrap();
+    place.write("uphill.ron", &format!("{end}, replay: (inputs: [Grade]))"));
+    let told = refused(1, &["check", &place.path("uphill.ron"), &recording]);
+    assert!(told.contains("do not go together"), "{told}");
+    let told: Value = serde_json::from_str(&{
+        let output = headland().args(["check", &place.path("uphill.ron"), &recording, "--json"]).output();
+        String::from_utf8(output.unwrap().stdout).unwrap()
+    })
+    .unwrap();
+    assert_eq!((told[1]["ok"].clone(), told[2]["ok"].clone()), (true.into(), false.into()));
+    assert!(told[2]["told"].as_str().unwrap().contains("grade"), "{told}");
+}
+
+#[test]
 fn a_recording_is_compared_and_its_inputs_are_called_driven() {
     let place = Place::new();
     assert!(place.compare().status.success());

@@ -83,6 +83,20 @@ impl Kind {
         }
     }
 
+    /// What it holds against what, in words.
+    pub fn sides(self) -> &'static str {
+        match self {
+            Self::Parity => "the accelerometer against acceleration and slope",
+            Self::Slip => "the speed of the wheels against that over ground",
+            Self::Motion => "forces against acceleration",
+            Self::Shaft => "the engine's power against what is taken from it",
+            Self::Battery => "the battery's power against what is taken from it",
+            Self::Charge => "the state of charge against what is taken from the battery",
+            Self::Voltage => "the battery's voltage against its current",
+            Self::Fuel => "fuel against the engine's work",
+        }
+    }
+
     /// Unit of its residual.
     pub fn unit(self) -> &'static str {
         match self {

@@ -8,11 +8,12 @@ use crate::causes::trial::for_run;
 use crate::proof::forward::{agreeing, speed_noise, speeds, usual_window_s, windows_s};
 use crate::proof::refine::{Cured, Refined, said_with_all};
 use crate::runs::recorded::Recorded;
-use crate::runs::said::Said;
+use crate::runs::said::{Said, inputs};
 use crate::single_runs::events::Event;
 use crate::soundness::voltage::{drop_v, lost_w};
 use crate::{Case, DiagnoseError};
 use headland_scenario::Scenario;
+use headland_sim::Inputs;
 
 /// What an effect did along one run.
 #[derive(Clone, Debug)]
@@ -165,13 +166,30 @@ fn scenarios(case: &Case, refined: &Refined) -> Result<Vec<(Vec<usize>, String)>
     let count = if by_path(refined) { case.runs.len() } else { 1 };
     let mut all: Vec<(Vec<usize>, String)> = Vec::new();
     for run in 0..count {
-        let text = improved(case, refined, run)?.document().text().to_owned();
+        let mut document = improved(case, refined, run)?.document().clone();
+        if let Some(inputs) = told_beyond(case) {
+            document = document.with_inputs(&inputs)?;
+        }
+        let text = document.text().to_owned();
         match all.iter_mut().find(|(_, known)| *known == text) {
             Some((runs, _)) => runs.push(run),
             None => all.push((vec![run], text)),
         }
     }
     Ok(all)
+}
+
+/// The recorded circumstances that the diagnosis told the model in every run, by their names in a scenario; none where a
+/// replay would be told them without being asked, or where runs differ in what was recorded.
+fn told_beyond(case: &Case) -> Option<Vec<String>> {
+    let told = |run: &Recorded| inputs(&run.measured.trace, &run.measured.how);
+    let first = case.runs.first()?;
+    let all = told(first);
+    // A run that coasts throughout coasts whether that is told or not.
+    let asked = |input: &Inputs| first.measured.how.also.contains(input) || *input == Inputs::Coasting;
+    let same = |other: Vec<Inputs>| other.len() == all.len() && other.iter().all(|input| all.contains(input));
+    let alike = case.runs.iter().all(|run| same(told(run)));
+    (alike && !all.iter().all(asked)).then(|| all.iter().map(|input| format!("{input:?}")).collect())
 }
 
 /// Whether anything that was found belongs to one path or to one run.

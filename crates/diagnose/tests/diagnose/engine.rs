@@ -6,7 +6,10 @@ use headland_calibrate::statistics::Draws;
 use headland_diagnose::{Options, Verdict};
 use headland_plugin::Registry;
 use headland_recording::{RecordedRun, Recording};
+use headland_scenario::Scenario;
+use headland_sim::Inputs;
 use headland_trace::{Origin, Trace};
+use std::path::Path;
 use std::sync::LazyLock;
 
 const SCENARIO: &str = r#"(
@@ -117,6 +120,9 @@ fn a_loss_between_engine_and_wheels_is_told_beside_a_flag_of_coasting() {
     assert!(diagnosis.findings.iter().all(|finding| finding.id != "engine_friction"), "{}", diagnosis.answer);
     // What nothing drives forward is told by the power of the engine.
     assert_eq!(diagnosis.fit.signal, "engine_power_w");
+    // The engine of the improved scenario turns as it was recorded, as it did here.
+    let improved = Scenario::of_text("improved.ron", &found.scenarios[0], Path::new(""), &registry).unwrap();
+    assert_eq!(improved.replay.inputs, Some(vec![Inputs::Coasting, Inputs::EngineSpeed]));
 }
 
 /// Brakes hold the wheels at which the force was measured, and the engine, which they drive, turns more slowly than that of the model:

@@ -36,7 +36,7 @@ pub(crate) fn at_recording(runs: &[RecordedRun], notices: &mut Vec<Notice>) {
 }
 
 /// What is told of one channel in run after run, and is a matter of how it is logged, is told once.
-fn merge(notices: &mut Vec<Notice>) {
+pub(crate) fn merge(notices: &mut Vec<Notice>) {
     let mut merged: Vec<(Notice, usize)> = Vec::new();
     for notice in notices.drain(..) {
         let alike = matches!(

@@ -1,5 +1,6 @@
 //! A scenario held against a recording: what drives the model, what it is told, and what it is judged by.
 
+use crate::curved::{self, is_straight, with_curvature};
 use crate::fit::{Fit, Parameter, Residuals, fit};
 use crate::statistics::{mean, median};
 use headland_plugin::Registry;
@@ -113,11 +114,15 @@ pub struct Measured {
 impl Measured {
     /// Sample by sample, whether the model follows the motion, since something drove that was not recorded.
     pub fn followed(&self) -> Vec<bool> {
-        let told = self.how.drive == Drive::Coast && self.how.also.contains(&Inputs::Coasting);
-        if !told {
-            return vec![false; self.trace.len()];
+        let told = |input: Inputs| self.how.also.contains(&input);
+        let on = |name: &str| self.trace.get(name).unwrap_or_default().iter().map(|value| *value >= 0.5);
+        match self.how.drive {
+            Drive::Coast if told(Inputs::Coasting) => on(COASTING).map(|coasting| !coasting).collect(),
+            Drive::Force | Drive::Torque if self.how.follows_brakes && told(Inputs::Brake) => {
+                on("brake").collect()
+            }
+            _ => vec![false; self.trace.len()],
         }
-        is_coasting(&self.trace).iter().map(|coasting| !coasting).collect()
     }
 }
 
@@ -193,11 +198,16 @@ impl<'a> Study<'a> {
         registry: &'a Registry,
     ) -> Result<Self, StudyError> {
         let model = scenario.model(registry)?;
-        let mut notes = Vec::new();
-        let mut runs = Vec::new();
-        for run in &recording.runs {
+        let turned = if is_straight(&model) { with_curvature(recording)? } else { None };
+        let mut notes = turned.as_ref().map_or_else(Vec::new, |(_, made)| curved::told(made));
+        let recording = turned.as_ref().map_or(recording, |(turned, _)| turned);
+        let mut runs: Vec<Measured> = Vec::new();
+        for (number, run) in recording.runs.iter().enumerate() {
             let length_m = path_length_m(recording, run.path.as_deref());
-            runs.push(measured(scenario, &model, run, length_m, &mut notes)?);
+            let mut measured = measured(scenario, &model, run, length_m, &mut notes)?;
+            let same = |other: &&RecordedRun| run.path.is_some() && other.path == run.path;
+            measured.how.passes_before = recording.runs[..number].iter().filter(same).count() as u32;
+            runs.push(measured);
         }
         let mut parameters = Vec::new();
         let mut paths = Vec::new();
@@ -503,7 +513,15 @@ fn measured(
         notes.push(format!("taken to coast throughout, which no channel says: {why}"));
         trace.push(COASTING, vec![1.0; trace.len()], Origin::Driven)?;
     }
-    let also = settings.inputs.clone().unwrap_or_else(|| inputs_of(&trace, drive));
+    let also = match &settings.inputs {
+        None => inputs_of(&trace, drive),
+        Some(asked) if asked.all => {
+            let mut also = inputs_of(&trace, drive);
+            also.extend(asked.listed.iter().filter(|input| !Inputs::ALL.contains(input)));
+            also
+        }
+        Some(asked) => asked.listed.clone(),
+    };
     let period_s = trace.period_s();
     let smoothing_s = settings.smoothing_s.unwrap_or_else(|| smoothed_s(period_s));
     let forward = drive != Drive::Speed && drive != Drive::Coast;
@@ -533,7 +551,16 @@ fn measured(
         _ => length_m,
     });
     notes.extend(beyond_the_terrain(model.terrain.extent_m(), &trace, reversed_from_m));
-    let how = Replay { drive, also, window_s, smoothing_s, step_s: settings.step_s, reversed_from_m };
+    let how = Replay {
+        drive,
+        also,
+        window_s,
+        smoothing_s,
+        step_s: settings.step_s,
+        reversed_from_m,
+        passes_before: 0,
+        follows_brakes: !model.effects.iter().any(|effect| effect.name.starts_with("braking")),
+    };
     let compared = compared(&trace, smoothing_s, settings.least_acceleration_m_s2);
     let mut measured =
         Measured { id: run.id.clone(), trace, how, signals, held_out: run.held_out, known, compared };
@@ -661,6 +688,8 @@ fn predicted(signals: Vec<String>, model: &Model, trace: &Trace) -> Vec<String> 
         smoothing_s: 1.0,
         step_s: 1.0,
         reversed_from_m: None,
+        passes_before: 0,
+        follows_brakes: false,
     };
     let times = trace.time_s();
     let Some(first) = times.first() else { return Vec::new() };

@@ -17,5 +17,7 @@ mod interruption;
 mod large;
 #[path = "cli/optimum.rs"]
 mod optimum;
+#[path = "cli/replayed.rs"]
+mod replayed;
 #[path = "cli/scenarios.rs"]
 mod scenarios;

@@ -17,6 +17,7 @@ use crate::runs::standin::{Prepared, prepared};
 use crate::runs::way::Scale;
 use crate::so_far::SoFar;
 use crate::soundness::unmoved::{UNMOVED, UNTOLD, is_mass, moved};
+use headland_calibrate::curved::is_straight;
 use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
 use headland_calibrate::study::Study;
 use headland_plugin::{Contact, Registry, closest};
@@ -131,6 +132,8 @@ impl<'a> Case<'a> {
         let prepared = prepared(recording, wanted(options, SPEED_SCALE), is_straight(&model))?;
         let recording = &prepared.recording;
         let mut study = Study::of_any(scenario, recording, registry)?;
+        // Brakes are looked for: what they did has to show.
+        study.runs.iter_mut().for_each(|run| run.how.follows_brakes = false);
         // Nobody could list what was not recorded.
         for run in study.runs.iter_mut().filter(|run| prepared.curved && Inputs::Curvature.whole(&run.trace))
         {
@@ -447,16 +450,6 @@ fn right(prepared: &Prepared) -> Option<&'static str> {
     let known = prepared.scale.is_some_and(|scale| scale.is_right() || scale.is_wrong());
     let wheels = prepared.recording.runs.iter().any(|run| run.trace.get("wheel_speed_m_s").is_some());
     (known && !wheels).then_some(SPEED_SCALE)
-}
-
-/// Whether the path of a scenario bends nowhere; one that does says itself how.
-fn is_straight(model: &headland_sim::Model) -> bool {
-    /// So far a path without an end is looked along [m], in so many steps.
-    const FAR_M: f64 = 1000.0;
-    const STEPS: u32 = 500;
-    let (from_m, to_m) = model.terrain.extent_m().unwrap_or((0.0, FAR_M));
-    let at = |step: u32| from_m + (to_m - from_m) * f64::from(step) / f64::from(STEPS);
-    (0..=STEPS).all(|step| model.terrain.at(at(step)).curvature_per_m == 0.0)
 }
 
 /// Resistance of the nominal ground over weight at walking speed.

@@ -4,7 +4,7 @@
 //!
 //! Source: Holm, *Journal of Terramechanics* 6 (1969), multi-pass behaviour: the increments of rut depth shrink from pass to
 //! pass; here as a geometric sequence.
-//! N is `pass` at the start and grows by one with every lap where `lap_length_m` is given. q above 1 is ground that breaks up.
+//! N is `pass` at the start, where it is left out that of a recorded run on its path, and grows by one with every lap where `lap_length_m` is given. q above 1 is ground that breaks up.
 //! Fingerprint: resistance falls from run to run in the same lane, and a fresh lane brings it back.
 
 use crate::rolling_resistance::load_n;
@@ -17,8 +17,7 @@ use serde::Deserialize;
 pub struct Multipass {
     coefficient: f64,
     factor: f64,
-    #[serde(default = "first")]
-    pass: f64,
+    pass: Option<f64>,
     #[serde(default = "no_lap")]
     lap_length_m: f64,
 }
@@ -45,7 +44,11 @@ impl Plugin for Multipass {
             parameter("factor", "1", "from one pass to the next, q")
                 .must_be(Bound::Positive)
                 .usually(0.4, 1.2),
-            parameter("pass", "1", "number of the pass at the start of the run, from 1, N")
+            parameter(
+                "pass",
+                "1",
+                "number of the pass at the start of the run, from 1, N; where it is left out, a replay counts the recorded runs of a path",
+            )
                 .must_be(Bound::Positive)
                 .usually(1.0, 30.0)
                 .or(first()),
@@ -63,7 +66,8 @@ impl Plugin for Multipass {
 
 impl Effect for Multipass {
     fn act(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Action {
-        let before = self.pass - 1.0 + (at.position_m / self.lap_length_m).floor().max(0.0);
+        let first = self.pass.map_or(f64::from(at.passes_before), |pass| pass - first());
+        let before = first + (at.position_m / self.lap_length_m).floor().max(0.0);
         let change = self.factor.powf(before) - 1.0;
         Action { resistance_n: self.coefficient * change * load_n(at), ..Action::default() }
     }

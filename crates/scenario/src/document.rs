@@ -4,6 +4,7 @@
 //! "30 km/h"`) by the number. What is left is plain RON for `serde`; positions of its errors lead back to the file.
 
 use crate::error::{Location, ScenarioError};
+use crate::scenario::AskedInputs;
 use crate::tree::{Node, Shape, parse};
 use headland_units::{Unit, parse_quantity, unit_of_name};
 use std::ops::Range;
@@ -179,11 +180,14 @@ impl Document {
         }
     }
 
-    /// A copy whose replay is told just these recorded circumstances, by their names in a scenario.
+    /// A copy whose replay is told just these recorded circumstances.
     ///
     /// # Errors
     /// What [`Document::of_text`] refuses.
-    pub fn with_inputs(&self, names: &[String]) -> Result<Self, ScenarioError> {
+    pub fn with_inputs(&self, asked: &AskedInputs) -> Result<Self, ScenarioError> {
+        let all = asked.all.then(|| "All".to_owned());
+        let names: Vec<String> =
+            all.into_iter().chain(asked.listed.iter().map(|input| format!("{input:?}"))).collect();
         let list = format!("[{}]", names.join(", "));
         if self.find("replay.inputs").is_some() {
             return self.replaced(&[("replay.inputs", list)]);

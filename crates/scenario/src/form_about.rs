@@ -207,6 +207,11 @@ pub const ABOUT: &[(&str, &str, &str)] = &[
     ("scenario", "replay.inputs.Payload", "mass that is carried beside that of the vehicle"),
     ("scenario", "replay.inputs.Coasting", "when it was in neutral"),
     ("scenario", "replay.inputs.Brake", "force of the service brakes"),
+    (
+        "scenario",
+        "replay.inputs.All",
+        "all that a replay is told without being asked, and those listed beside it",
+    ),
     ("scenario", "replay.inputs.EngineSpeed", "of the engine, whatever the driveline would have chosen"),
     ("scenario", "replay.window_s", "after which a long recording starts anew"),
     (

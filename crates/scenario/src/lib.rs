@@ -41,5 +41,5 @@ pub use document::Document;
 pub use error::{Location, ScenarioError};
 pub use form::{Definition, Note, definitions};
 pub use plugins::Remark;
-pub use scenario::{Free, ReplaySettings, RunSpec, Scenario};
+pub use scenario::{AskedInputs, Free, ReplaySettings, RunSpec, Scenario};
 pub use tree::{Field, Node, Shape};

@@ -46,7 +46,7 @@ pub struct ReplaySettings {
     /// What moves the model.
     pub drive: Option<Drive>,
     /// Recorded circumstances that the model is told.
-    pub inputs: Option<Vec<Inputs>>,
+    pub inputs: Option<AskedInputs>,
     /// Length of the windows that start anew from the recorded speed [s].
     pub window_s: Option<f64>,
     /// Half width of the local fit that gives speed and acceleration of the recording [s].
@@ -55,6 +55,15 @@ pub struct ReplaySettings {
     pub least_acceleration_m_s2: Option<f64>,
     /// Longest step of the integration [s].
     pub step_s: f64,
+}
+
+/// Recorded circumstances that a model is to be told.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AskedInputs {
+    /// Whether all that a replay is told without being asked are among them, where they were recorded.
+    pub all: bool,
+    /// Those that stand in the list; they have to have been recorded.
+    pub listed: Vec<Inputs>,
 }
 
 /// A parameter that estimation may move.
@@ -394,34 +403,40 @@ fn replay_settings(file: &ScenarioFile) -> ReplaySettings {
             DriveFile::Force => Drive::Force,
             DriveFile::Coast => Drive::Coast,
         }),
-        inputs: replay.and_then(|replay| replay.inputs.as_ref()).map(|inputs| {
-            let input = |input: &InputFile| match input {
-                InputFile::Grade => Inputs::Grade,
-                InputFile::Heading => Inputs::Heading,
-                InputFile::Curvature => Inputs::Curvature,
-                InputFile::Roll => Inputs::Roll,
-                InputFile::VerticalAcceleration => Inputs::VerticalAcceleration,
-                InputFile::Wind => Inputs::Wind,
-                InputFile::AirTemperature => Inputs::AirTemperature,
-                InputFile::OilTemperature => Inputs::OilTemperature,
-                InputFile::StateOfCharge => Inputs::StateOfCharge,
-                InputFile::TyrePressure => Inputs::TyrePressure,
-                InputFile::AuxiliaryPower => Inputs::AuxiliaryPower,
-                InputFile::DrawbarForce => Inputs::DrawbarForce,
-                InputFile::PtoPower => Inputs::PtoPower,
-                InputFile::HydraulicPower => Inputs::HydraulicPower,
-                InputFile::Payload => Inputs::Payload,
-                InputFile::Coasting => Inputs::Coasting,
-                InputFile::Brake => Inputs::Brake,
-                InputFile::EngineSpeed => Inputs::EngineSpeed,
-            };
-            inputs.iter().map(input).collect()
-        }),
+        inputs: replay.and_then(|replay| replay.inputs.as_deref()).map(asked),
         window_s: replay.and_then(|replay| replay.window_s),
         smoothing_s: replay.and_then(|replay| replay.smoothing_s),
         least_acceleration_m_s2: replay.and_then(|replay| replay.least_acceleration_m_s2),
         step_s: file.simulation.step_s,
     }
+}
+
+fn asked(inputs: &[InputFile]) -> AskedInputs {
+    let named = |input: &InputFile| {
+        Some(match input {
+            InputFile::All => return None,
+            InputFile::Grade => Inputs::Grade,
+            InputFile::Heading => Inputs::Heading,
+            InputFile::Curvature => Inputs::Curvature,
+            InputFile::Roll => Inputs::Roll,
+            InputFile::VerticalAcceleration => Inputs::VerticalAcceleration,
+            InputFile::Wind => Inputs::Wind,
+            InputFile::AirTemperature => Inputs::AirTemperature,
+            InputFile::OilTemperature => Inputs::OilTemperature,
+            InputFile::StateOfCharge => Inputs::StateOfCharge,
+            InputFile::TyrePressure => Inputs::TyrePressure,
+            InputFile::AuxiliaryPower => Inputs::AuxiliaryPower,
+            InputFile::DrawbarForce => Inputs::DrawbarForce,
+            InputFile::PtoPower => Inputs::PtoPower,
+            InputFile::HydraulicPower => Inputs::HydraulicPower,
+            InputFile::Payload => Inputs::Payload,
+            InputFile::Coasting => Inputs::Coasting,
+            InputFile::Brake => Inputs::Brake,
+            InputFile::EngineSpeed => Inputs::EngineSpeed,
+        })
+    };
+    let listed: Vec<Inputs> = inputs.iter().filter_map(named).collect();
+    AskedInputs { all: listed.len() < inputs.len(), listed }
 }
 
 fn free(document: &Document, file: &ScenarioFile) -> Result<Vec<Free>, ScenarioError> {

@@ -1,6 +1,6 @@
 //! What a scenario says, and what a mistake in it gets.
 
-use crate::{Scenario, ScenarioError};
+use crate::{AskedInputs, Scenario, ScenarioError};
 use headland_sim::{Inputs, Phase, Resistance, Until};
 use std::path::Path;
 
@@ -89,16 +89,11 @@ fn an_effect_can_be_added() {
 #[test]
 fn a_replay_can_be_told_more() {
     let scenario = read(GOOD).unwrap();
-    let inputs = ["Heading".to_owned(), "EngineSpeed".to_owned()];
+    let inputs = AskedInputs { all: true, listed: vec![Inputs::Heading, Inputs::EngineSpeed] };
     let asked = |text: &str| {
         let document = read(text).unwrap().document().with_inputs(&inputs).unwrap();
         let told = Scenario::of(document.clone(), &headland_stock::registry()).unwrap();
-        assert_eq!(
-            told.replay.inputs,
-            Some(vec![Inputs::Heading, Inputs::EngineSpeed]),
-            "{}",
-            document.text()
-        );
+        assert_eq!(told.replay.inputs.as_ref(), Some(&inputs), "{}", document.text());
         told.replay
     };
     assert_eq!(scenario.replay.inputs, None);

@@ -135,6 +135,7 @@ pub enum DriveFile {
 
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub enum InputFile {
+    All,
     Grade,
     Heading,
     Curvature,

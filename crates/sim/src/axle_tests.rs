@@ -393,6 +393,8 @@ fn a_replay_on_wheels_repeats_the_drive() {
             smoothing_s: 0.05,
             step_s: 0.02,
             reversed_from_m: None,
+            passes_before: 0,
+            follows_brakes: false,
         };
         replay(&model, &original, &how).unwrap()
     };
@@ -569,6 +571,8 @@ fn a_recorded_stop_is_not_held_against_friction() {
             smoothing_s: 0.05,
             step_s: 0.02,
             reversed_from_m: None,
+            passes_before: 0,
+            follows_brakes: false,
         };
         let again = replay(&model, &stop.trace, &how).unwrap();
         again.trace.get("brake_force_n").unwrap().to_vec()

@@ -39,6 +39,8 @@ pub(crate) enum Command {
 pub(crate) struct Given {
     /// Where the path is driven towards its start from [m]; positions then count what was travelled.
     pub reversed_from_m: Option<f64>,
+    /// How often the path was driven before.
+    pub passes_before: u32,
     /// Whether a vehicle at rest is to set off backward.
     pub backward: bool,
     pub sin_slope: Option<f64>,
@@ -418,6 +420,7 @@ impl Model {
             time_s: point.time_s,
             position_m,
             reversed: given.reversed_from_m.is_some(),
+            passes_before: given.passes_before,
             speed_m_s: point.speed_m_s,
             acceleration_m_s2: 0.0,
             mass_kg: self.vehicle.mass_kg,

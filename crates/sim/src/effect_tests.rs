@@ -187,6 +187,8 @@ fn by_force() -> Replay {
         smoothing_s: 0.05,
         step_s: 0.01,
         reversed_from_m: None,
+        passes_before: 0,
+        follows_brakes: false,
     }
 }
 
@@ -301,6 +303,8 @@ fn wheels_of_a_recorded_motion_slip_by_the_force_that_it_took() {
         smoothing_s: 2.0,
         step_s: 0.5,
         reversed_from_m: None,
+        passes_before: 0,
+        follows_brakes: false,
     };
     let trace = replay(&model, &recorded, &how).unwrap().trace;
     assert!((trace.get("wheel_speed_m_s").unwrap()[10] - 10.0 / 0.9).abs() < 1e-9);
@@ -398,6 +402,8 @@ fn a_path_leans_and_turns_the_other_way_from_its_end_and_as_the_log_says() {
             smoothing_s: 0.1,
             step_s: 0.01,
             reversed_from_m,
+            passes_before: 0,
+            follows_brakes: false,
         };
         replay(&feels, &log, &how).unwrap().trace.get("effect_0_n").unwrap()[20]
     };

@@ -317,6 +317,8 @@ fn a_coast_that_follows_a_drive_starts_from_it() {
         smoothing_s: 0.05,
         step_s: 0.02,
         reversed_from_m: None,
+        passes_before: 0,
+        follows_brakes: false,
     };
     let apart = |model: &Model| {
         let modelled = replay(model, &original, &how).unwrap().trace;
@@ -352,6 +354,8 @@ fn a_replay_of_the_models_own_drive_repeats_it() {
         smoothing_s: 0.05,
         step_s: 0.02,
         reversed_from_m: None,
+        passes_before: 0,
+        follows_brakes: false,
     };
     let forward = replay(&model, &original, &how(Drive::Force, None)).unwrap();
     let worst = forward
@@ -402,6 +406,8 @@ fn a_recording_that_goes_backward_is_replayed_backward() {
         smoothing_s: 0.05,
         step_s: STEP_S,
         reversed_from_m: None,
+        passes_before: 0,
+        follows_brakes: false,
     };
     for window_s in [None, Some(7.0)] {
         let moved = replay(&model, &recorded, &how(window_s)).unwrap().trace;

@@ -46,6 +46,11 @@ pub struct Replay {
     ///
     /// Recorded positions count along the path where they fall, and from the run's own start where they grow.
     pub reversed_from_m: Option<f64>,
+    /// How often the path was driven before.
+    pub passes_before: u32,
+    /// Whether the recorded motion is followed while somebody brakes, where `Inputs::Brake` is told and a recorded force or
+    /// torque drives: how hard the brakes hold nobody recorded.
+    pub follows_brakes: bool,
 }
 
 /// A recorded circumstance.
@@ -199,6 +204,7 @@ fn replayed(
 /// The recorded inputs.
 struct Tape<'a> {
     reversed_from_m: Option<f64>,
+    passes_before: u32,
     time_s: &'a [f64],
     motion: LocalFit,
     position_m: Vec<f64>,
@@ -255,6 +261,7 @@ impl<'a> Tape<'a> {
         let reversed_from_m = how.reversed_from_m;
         Ok(Self {
             reversed_from_m,
+            passes_before: how.passes_before,
             time_s,
             motion,
             position_m,
@@ -268,7 +275,11 @@ impl<'a> Tape<'a> {
 
     /// The circumstances at a share of the way from sample `index` to the next, and whether the vehicle coasts.
     fn given(&self, model: &Model, index: usize, share: f64) -> (Given, bool) {
-        let mut given = Given { reversed_from_m: self.reversed_from_m, ..Given::default() };
+        let mut given = Given {
+            reversed_from_m: self.reversed_from_m,
+            passes_before: self.passes_before,
+            ..Given::default()
+        };
         let mut coasting = false;
         for (input, columns) in &self.also {
             let value = |column: usize| {
@@ -353,10 +364,17 @@ impl<'a> Tape<'a> {
         if self.is_backward(index) { speed } else { speed.max(0.0) }
     }
 
-    /// Whether something drives the vehicle of which nothing is known but how it moved.
+    /// Whether something drives or brakes the vehicle of which nothing is known but how it moved.
     fn is_followed(&self, how: &Replay, index: usize) -> bool {
-        let coasting = self.also.iter().find(|(input, _)| *input == Inputs::Coasting);
-        how.drive == Drive::Coast && coasting.is_some_and(|(_, columns)| columns[0][index] < 0.5)
+        let told = |input: Inputs| self.also.iter().find(|(own, _)| *own == input);
+        let is = |input: Inputs, on: bool| {
+            told(input).is_some_and(|(_, columns)| (columns[0][index] >= 0.5) == on)
+        };
+        match how.drive {
+            Drive::Coast => is(Inputs::Coasting, false),
+            Drive::Force | Drive::Torque => how.follows_brakes && is(Inputs::Brake, true),
+            Drive::Speed => false,
+        }
     }
 
     /// Follows the recorded motion sample by sample. `command` is told the sample, the speed and whether it coasts, and

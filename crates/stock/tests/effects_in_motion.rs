@@ -196,6 +196,8 @@ fn what_an_effect_did_is_found_again_from_the_speed_that_it_left() {
         smoothing_s: 0.021,
         step_s: 0.01,
         reversed_from_m: None,
+        passes_before: 0,
+        follows_brakes: false,
     };
     for (name, parameters, channel) in EFFECTS {
         if channel.is_empty() || name == "neutral_drag" {
@@ -220,6 +222,8 @@ fn what_an_effect_did_is_found_again_from_the_force_that_it_took() {
         smoothing_s: 0.021,
         step_s: 0.01,
         reversed_from_m: None,
+        passes_before: 0,
+        follows_brakes: false,
     };
     for (name, parameters, channel) in EFFECTS {
         if channel.is_empty() {
@@ -261,6 +265,8 @@ fn powers_that_were_recorded_stand_in_the_place_of_what_tasks_take() {
             smoothing_s: 0.021,
             step_s: 0.01,
             reversed_from_m: None,
+            passes_before: 0,
+            follows_brakes: false,
         };
         at_time(&replay(model, &original.trace, &how).unwrap(), "fuel_rate_kg_s", 3.2)
     };
@@ -302,6 +308,8 @@ fn a_run_against_the_path_meets_its_slopes_from_the_other_end() {
         smoothing_s: 0.021,
         step_s: 0.01,
         reversed_from_m: Some(90.0),
+        passes_before: 0,
+        follows_brakes: false,
     };
     let back = replay(&model, &original.trace, &how).unwrap();
     let (early_s, late_s) = (3.2, 11.0);

@@ -114,7 +114,7 @@ pub fn notes(of_study: &[String], pairs: &[Pair]) -> Vec<String> {
     );
     left_out(
         |pair| pair.followed,
-        "the vehicle does not coast there, and what drives it was not recorded: the model follows its motion",
+        "what drives the vehicle there, or how hard its brakes hold, was not recorded: the model follows its motion",
     );
     notes
 }

@@ -71,7 +71,7 @@ fn check_holds_one_scenario_and_one_recording_together() {
     assert!(!done(&["check", &scenario, &scenario, &recording]).contains("together"));
     let text = std::fs::read_to_string(&scenario).unwrap();
     let end = text.trim_end().strip_suffix(')').unwrap();
-    place.write("uphill.ron", &format!("{end}, replay: (inputs: [Grade]))"));
+    place.write("uphill.ron", &format!("{end}    replay: (inputs: [Grade]),\n)"));
     let told = refused(1, &["check", &place.path("uphill.ron"), &recording]);
     assert!(told.contains("do not go together"), "{told}");
     let told: Value = serde_json::from_str(&{

@@ -370,11 +370,6 @@ pub fn for_run(text: &str, cause: &Cause, run: &Recorded) -> String {
     if cause.run.is_some_and(|own| own != run.number) {
         return cause.idle();
     }
-    let laps = cause.terms.iter().any(|term| term.name == "lap_length_m");
-    if cause.id == "multipass" && !laps {
-        let text = text.strip_suffix(')').unwrap_or(text);
-        return format!("{text}, pass: {:?})", run.pass as f64 + 1.0);
-    }
     text.to_owned()
 }
 

@@ -12,7 +12,7 @@ use crate::soundness::faults::Fault;
 use crate::{Case, DiagnoseError, System};
 
 /// Error over the noise of the sensor above which something is missing, whatever the recordings ask for.
-const LACKS: f64 = 8.0;
+const LACKS: f64 = 6.0;
 /// What foresees runs leaves less than this share of their mean squares in some balance, beyond those of neighbouring rows,
 const FORESEEN: f64 = 0.3;
 /// where these are not nearly all there is,

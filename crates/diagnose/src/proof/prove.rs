@@ -5,6 +5,7 @@ use crate::balances::gram::Column;
 use crate::causes::catalogue::{Class, Form, LawText};
 use crate::causes::sensors::corrected;
 use crate::causes::trial::for_run;
+use crate::choosing::search::Found;
 use crate::proof::forward::{agreeing, speed_noise, speeds, usual_window_s, windows_s};
 use crate::proof::refine::{Cured, Refined, said_with_all};
 use crate::runs::recorded::Recorded;
@@ -12,7 +13,7 @@ use crate::runs::said::{Said, inputs};
 use crate::single_runs::events::Event;
 use crate::soundness::voltage::{drop_v, lost_w};
 use crate::{Case, DiagnoseError};
-use headland_scenario::Scenario;
+use headland_scenario::{AskedInputs, Scenario};
 use headland_sim::Inputs;
 
 /// What an effect did along one run.
@@ -67,6 +68,16 @@ pub struct Proof {
     pub effects: Vec<Reconstructed>,
     /// The improved scenario: each text with the runs that it is of, the first being that of `scenario.ron`.
     pub scenarios: Vec<(Vec<usize>, String)>,
+}
+
+/// What neighbouring rows of a signal differ by, where no sensor's noise is known: NaN where no balance has that signal.
+pub fn neighbours(case: &Case, system: &System, found: &Found, signal: &str) -> f64 {
+    let number = system.kinds.iter().position(|kind| kind.signal() == signal);
+    number.map_or(f64::NAN, |number| {
+        let stand = &found.stand;
+        let quiet = system.quiet(&stand.left, &case.fit, &stand.noises);
+        system.kinds[number].per_unit() * quiet.each[number].sd()
+    })
 }
 
 /// By what a proof is told.
@@ -167,8 +178,8 @@ fn scenarios(case: &Case, refined: &Refined) -> Result<Vec<(Vec<usize>, String)>
     let mut all: Vec<(Vec<usize>, String)> = Vec::new();
     for run in 0..count {
         let mut document = improved(case, refined, run)?.document().clone();
-        if let Some(inputs) = told_beyond(case) {
-            document = document.with_inputs(&inputs)?;
+        if let Some(asked) = asked(case) {
+            document = document.with_inputs(&asked)?;
         }
         let text = document.text().to_owned();
         match all.iter_mut().find(|(_, known)| *known == text) {
@@ -179,17 +190,17 @@ fn scenarios(case: &Case, refined: &Refined) -> Result<Vec<(Vec<usize>, String)>
     Ok(all)
 }
 
-/// The recorded circumstances that the diagnosis told the model in every run, by their names in a scenario; none where a
-/// replay would be told them without being asked, or where runs differ in what was recorded.
-fn told_beyond(case: &Case) -> Option<Vec<String>> {
-    let told = |run: &Recorded| inputs(&run.measured.trace, &run.measured.how);
-    let first = case.runs.first()?;
-    let all = told(first);
-    // A run that coasts throughout coasts whether that is told or not.
-    let asked = |input: &Inputs| first.measured.how.also.contains(input) || *input == Inputs::Coasting;
-    let same = |other: Vec<Inputs>| other.len() == all.len() && other.iter().all(|input| all.contains(input));
-    let alike = case.runs.iter().all(|run| same(told(run)));
-    (alike && !all.iter().all(asked)).then(|| all.iter().map(|input| format!("{input:?}")).collect())
+/// What a replay has to be asked for where the engine of every run turned as it was recorded, which one that is not asked to
+/// leaves to the model; none where it was asked, or nothing was recorded.
+fn asked(case: &Case) -> Option<AskedInputs> {
+    let told = |run: &Recorded| inputs(&run.measured.trace, &run.measured.how).contains(&Inputs::EngineSpeed);
+    let before = &case.study.scenario().replay.inputs;
+    let mut asked = before.clone().unwrap_or(AskedInputs { all: true, listed: Vec::new() });
+    if asked.listed.contains(&Inputs::EngineSpeed) || !case.runs.iter().all(told) {
+        return None;
+    }
+    asked.listed.push(Inputs::EngineSpeed);
+    Some(asked)
 }
 
 /// Whether anything that was found belongs to one path or to one run.

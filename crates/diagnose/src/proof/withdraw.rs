@@ -6,8 +6,9 @@ use crate::causes::trial::Pool;
 use crate::choosing::search::{Found, Rival, worth};
 use crate::choosing::state::{Part, Stand, State};
 use crate::proof::denied::instead;
+use crate::proof::forward::speed_noise;
 use crate::proof::mirror::is_whole;
-use crate::proof::prove::{Errors, Measure, prove};
+use crate::proof::prove::{Errors, Measure, neighbours, prove};
 use crate::proof::proven::{Proven, RISES, held_out, is_worse};
 use crate::proof::refine::Cured;
 use crate::single_runs::events::Event;
@@ -21,6 +22,10 @@ const HELPS: f64 = 0.6;
 const MISSED: f64 = 0.7;
 /// What is hardly beyond chance has to take this share of the error of runs held out.
 const BORNE_OUT: f64 = 0.1;
+/// Of what is more than noise on runs held out a formula has to explain this share, where that is less than so many times the noise: a law
+/// explains nearly all of it, and what bends a model to the runs that it was made of does not.
+const SHARE: f64 = 0.5;
+const LITTLE: f64 = 3.0;
 
 /// Growth of ln p that the best of all formulas needs: a law of two terms is one of some ten thousand squared, and its constants are
 /// free. ln 10⁸ and a few for each constant.
@@ -62,6 +67,7 @@ pub fn proven(
         best = lesser;
         withdrawn = true;
     }
+    best = simpler(case, system, pool, best, (events, by))?;
     for place in (0..best.found.stand.parts.len()).rev() {
         if is_slight(case, &best, place)
             && let Some(found) = without(case, system, pool, &best.found, place)
@@ -80,9 +86,8 @@ pub fn proven(
             best = Proven::of(case, system, pool, found, events, Some(by))?;
             continue;
         }
-        if let Some(lesser) = without_idle(case, system, pool, &best, (events, by), place)? {
-            // What was hardly there to begin with leaves nothing missing.
-            withdrawn |= !is_faint(&best, place);
+        if let Some((lesser, missing)) = without_idle(case, system, pool, &best, (events, by), place)? {
+            withdrawn |= missing;
             best = lesser;
         }
     }
@@ -106,6 +111,42 @@ pub fn proven(
     if withdrawn && helped && bare {
         let unproven = best.found.unproven.iter();
         best.withheld = Some(nothing_left(unproven.map(|cause| case.causes[*cause].words)));
+    }
+    Ok(best)
+}
+
+/// What was proven; without a cause beside which the others cannot be fitted as they are, where they foretell all runs far better
+/// by themselves: a function lets what is not in proportion be told by its columns alone, which draw no wind of its strength.
+fn simpler(
+    case: &Case,
+    system: &System,
+    pool: &mut Pool,
+    mut best: Proven,
+    (events, by): (&[Event], &Measure),
+) -> Result<Proven, DiagnoseError> {
+    /// What leaves less than this is right, or nearly, in noises of the signal.
+    const NEAR: f64 = 3.0;
+    /// Share of the error that has to be left.
+    const FAR_BETTER: f64 = 0.5;
+    let far = |one: &Proven| {
+        one.proof.held_out.is_some_and(|errors| errors.after > NEAR * noise(case, system, one, by.kind))
+    };
+    while best.found.stand.parts.len() > 1 && far(&best) {
+        let mut least: Option<Proven> = None;
+        for place in 0..best.found.stand.parts.len() {
+            let state = State { case, system, pool, fit: &case.fit };
+            let unproven = best.found.unproven.clone();
+            let Some(found) = lesser_set(&state, &best.found, place, unproven) else { continue };
+            let lesser = Proven::of(case, system, pool, found, events, Some(by))?;
+            let error = |one: &Proven| one.proof.held_out.map_or(f64::INFINITY, |errors| errors.after);
+            let better = error(&lesser) < FAR_BETTER * error(&best)
+                && lesser.proof.fitted.after < FAR_BETTER * best.proof.fitted.after;
+            if better && least.as_ref().is_none_or(|least| error(&lesser) < error(least)) {
+                least = Some(lesser);
+            }
+        }
+        let Some(lesser) = least else { break };
+        best = lesser;
     }
     Ok(best)
 }
@@ -172,6 +213,7 @@ pub fn or_law(
 /// beyond chance or may as well be none, where runs held out are no better with it than without it or than with the nominal
 /// scenario, in the balance that it belongs to: formulas and maps are free to follow the runs that they were made of, and of many
 /// causes one fits the last bends of a model a little. A law beside maps that know none of those runs may only not make them worse.
+/// And whether something is missing then: what was hardly there to begin with leaves nothing.
 fn without_idle(
     case: &Case,
     system: &System,
@@ -179,7 +221,7 @@ fn without_idle(
     best: &Proven,
     (events, by): (&[Event], &Measure),
     place: usize,
-) -> Result<Option<Proven>, DiagnoseError> {
+) -> Result<Option<(Proven, bool)>, DiagnoseError> {
     let trial = &best.found.stand.parts[place].trial;
     let cause = &case.causes[trial.cause];
     // What a map says of a lane is often less than the noise of one sample: it may bring next to nothing, and no harm.
@@ -211,11 +253,30 @@ fn without_idle(
     let (with, without) = (errors(best)?, errors(&lesser)?);
     if alone {
         let worse = with.zip(without).is_some_and(|(with, without)| is_worse(&with, &without));
-        return Ok(worse.then_some(lesser));
+        return Ok(worse.then_some((lesser, true)));
+    }
+    let Some((with, without)) = with.zip(without) else { return Ok(None) };
+    let noise = noise(case, system, best, kind);
+    if cause.law.is_some() && without.after < LITTLE * noise && explained(&with, &without, noise) < SHARE {
+        return Ok(Some((lesser, false)));
     }
     let faint = is_faint(best, place);
-    let idle = with.zip(without).is_some_and(|(with, without)| is_idle(&with, &without, (needed, faint)));
-    Ok(idle.then_some(lesser))
+    Ok(is_idle(&with, &without, (needed, faint)).then_some((lesser, !faint)))
+}
+
+/// Noise of the signal of a balance, as it is told.
+fn noise(case: &Case, system: &System, best: &Proven, kind: Kind) -> f64 {
+    if kind == Kind::Motion {
+        speed_noise(case)
+    } else {
+        neighbours(case, system, &best.found, kind.signal())
+    }
+}
+
+/// Share of the mean square beyond noise that a cause explains.
+fn explained(with: &Errors, without: &Errors, noise: f64) -> f64 {
+    let beyond = |errors: &Errors| (errors.after.powi(2) - noise.powi(2)).max(0.0);
+    1.0 - beyond(with) / beyond(without)
 }
 
 /// Whether errors of runs held out fall by less than the share that is needed, against those without a cause, and against those

@@ -6,12 +6,12 @@
 
 use crate::DiagnoseError;
 use crate::causes::sensors::with_channel;
-use crate::runs::curved::{self, with_curvature};
 use crate::runs::laid::lay;
 use crate::runs::leaps::{leaps, without};
 use crate::runs::sparse::{self, Sparse, filled};
 use crate::runs::thinned::thinned;
 use crate::runs::way::{Scale, scale};
+use headland_calibrate::curved::{self, with_curvature};
 use headland_calibrate::study::StudyError;
 use headland_recording::{RecordedRun, Recording};
 use headland_trace::{Origin, Trace};
@@ -50,8 +50,8 @@ pub struct Prepared {
 /// # Errors
 /// [`StudyError::NoSpeed`] where no run has a speed of any kind.
 pub fn prepared(recording: &Recording, wrong: bool, straight: bool) -> Result<Prepared, DiagnoseError> {
-    let (recording, curved) =
-        if straight { with_curvature(recording)? } else { (recording.clone(), Vec::new()) };
+    let curved = if straight { with_curvature(recording)? } else { None };
+    let (recording, curved) = curved.unwrap_or_else(|| (recording.clone(), Vec::new()));
     let mut own = Prepared {
         recording: recording.clone(),
         stands_in: Vec::new(),

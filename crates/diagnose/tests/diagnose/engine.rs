@@ -6,7 +6,7 @@ use headland_calibrate::statistics::Draws;
 use headland_diagnose::{Options, Verdict};
 use headland_plugin::Registry;
 use headland_recording::{RecordedRun, Recording};
-use headland_scenario::Scenario;
+use headland_scenario::{AskedInputs, Scenario};
 use headland_sim::Inputs;
 use headland_trace::{Origin, Trace};
 use std::path::Path;
@@ -122,7 +122,7 @@ fn a_loss_between_engine_and_wheels_is_told_beside_a_flag_of_coasting() {
     assert_eq!(diagnosis.fit.signal, "engine_power_w");
     // The engine of the improved scenario turns as it was recorded, as it did here.
     let improved = Scenario::of_text("improved.ron", &found.scenarios[0], Path::new(""), &registry).unwrap();
-    assert_eq!(improved.replay.inputs, Some(vec![Inputs::Coasting, Inputs::EngineSpeed]));
+    assert_eq!(improved.replay.inputs, Some(AskedInputs { all: true, listed: vec![Inputs::EngineSpeed] }));
 }
 
 /// Brakes hold the wheels at which the force was measured, and the engine, which they drive, turns more slowly than that of the model:

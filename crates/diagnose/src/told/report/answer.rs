@@ -10,7 +10,7 @@ use crate::choosing::search::Found;
 use crate::experiment::Proposals;
 use crate::proof::elsewhere::elsewhere;
 use crate::proof::forward::usual_window_s;
-use crate::proof::prove::{Errors, Measure, Proof, prove};
+use crate::proof::prove::{Errors, Measure, Proof, neighbours, prove};
 use crate::proof::refine::{Cured, Free, HALF_95, Refined};
 use crate::single_runs::events::Event;
 use crate::soundness::faults::Fault;
@@ -212,7 +212,7 @@ fn fit(case: &Case, system: &System, found: Option<&Found>, proof: &Proof) -> Fi
         noise: if proof.noise.is_finite() {
             proof.noise
         } else {
-            neighbours(case, system, found, proof.signal)
+            found.map_or(f64::NAN, |found| neighbours(case, system, found, proof.signal))
         },
     };
     let lack = match (&proof.held_out, proof.noise) {
@@ -232,16 +232,6 @@ fn fit(case: &Case, system: &System, found: Option<&Found>, proof: &Proof) -> Fi
         held_out: proof.held_out.as_ref().map(|errors| runs(false, errors)),
         lack_of_fit: lack,
     }
-}
-
-/// What neighbouring rows of a signal differ by, where no sensor's noise is known: NaN where nothing was told of it.
-fn neighbours(case: &Case, system: &System, found: Option<&Found>, signal: &str) -> f64 {
-    let number = system.kinds.iter().position(|kind| kind.signal() == signal);
-    found.zip(number).map_or(f64::NAN, |(found, number)| {
-        let stand = &found.stand;
-        let quiet = system.quiet(&stand.left, &case.fit, &stand.noises);
-        system.kinds[number].per_unit() * quiet.each[number].sd()
-    })
 }
 
 /// The free parameters that could be told.

@@ -1,12 +1,10 @@
 //! Curvature that nobody recorded: the rate of turn over the speed, or how the heading changes along the way. It is made where a
 //! vehicle really turns: further than a lane bends by the noise of a compass, and so hard that its tyres could tell.
 
-use crate::DiagnoseError;
-use headland_calibrate::statistics::{median, quantile_of_sorted, sorted};
-use headland_recording::renewed_s;
-use headland_recording::{RecordedRun, Recording};
-use headland_sim::local_fit;
-use headland_trace::{Origin, Trace};
+use crate::statistics::{median, quantile_of_sorted, sorted};
+use headland_recording::{RecordedRun, Recording, renewed_s};
+use headland_sim::{Model, local_fit};
+use headland_trace::{Origin, Trace, TraceError};
 use std::f64::consts::{PI, TAU};
 
 /// What is made.
@@ -52,10 +50,23 @@ struct Turned {
     clear: bool,
 }
 
+/// Whether the path of a model is straight: no curvature is known of it but what was recorded.
+pub fn is_straight(model: &Model) -> bool {
+    /// So far a path without an end is looked along [m], in so many steps.
+    const FAR_M: f64 = 1000.0;
+    const STEPS: u32 = 500;
+    let (from_m, to_m) = model.terrain.extent_m().unwrap_or((0.0, FAR_M));
+    let at = |step: u32| from_m + (to_m - from_m) * f64::from(step) / f64::from(STEPS);
+    (0..=STEPS).all(|step| model.terrain.at(at(step)).curvature_per_m == 0.0)
+}
+
 /// The recording with curvature in all runs where some lack it, each can make it, and any of them turns; and which those are,
-/// with what theirs is made of.
-pub fn with_curvature(recording: &Recording) -> Result<(Recording, Made), DiagnoseError> {
-    let none = || Ok((recording.clone(), Vec::new()));
+/// with what theirs is made of. None where nothing is made.
+///
+/// # Errors
+/// [`TraceError`]: a bug.
+pub fn with_curvature(recording: &Recording) -> Result<Option<(Recording, Made)>, TraceError> {
+    let none = || Ok(None);
     let recorded = |run: &RecordedRun| run.trace.get(CURVATURE).is_some();
     let mut made: Vec<Option<Turned>> = Vec::new();
     for run in &recording.runs {
@@ -77,7 +88,7 @@ pub fn with_curvature(recording: &Recording) -> Result<(Recording, Made), Diagno
         run.trace.push(CURVATURE, turned.curvature_per_m, Origin::Measured)?;
         told.push((run.id.clone(), turned.source));
     }
-    Ok((own, told))
+    Ok(Some((own, told)))
 }
 
 /// The turns of a run by what shows them best; none where nothing does.
@@ -199,8 +210,7 @@ pub fn told(made: &[(String, &'static str)]) -> Vec<String> {
             made.iter().filter(|(_, own)| *own == source).map(|(run, _)| run.as_str()).collect();
         (!runs.is_empty()).then(|| {
             format!(
-                "In {} no `{CURVATURE}` was recorded; it is made of `{source}` and the speed. A recording that the improved \
-                 scenario is held against needs it as a channel.",
+                "In {} no `{CURVATURE}` was recorded; it is made of `{source}` and the speed.",
                 runs.join(", ")
             )
         })
@@ -211,7 +221,7 @@ pub fn told(made: &[(String, &'static str)]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use headland_calibrate::statistics::Draws;
+    use crate::statistics::Draws;
 
     /// A run of 60 s at 3 m/s and 20 Hz.
     fn run(heading_rad: impl Fn(f64, &mut Draws) -> f64) -> Trace {

@@ -1,0 +1,115 @@
+//! What a replay is told by a recording, against motions that are known in closed form.
+
+use super::help::{Place, done};
+
+/// A cart without air drag.
+fn scenario(place: &Place, effects: &str) {
+    let text = super::help::SCENARIO.replacen("drag_area_m2: 2.0", "drag_area_m2: 0.0", 1).replacen(
+        "    free:",
+        &format!("    effects: [{effects}],\n    free:"),
+        1,
+    );
+    place.write("scenario.ron", &text);
+}
+
+/// Rows of 0.1 s for so long.
+fn log(head: &str, long_s: f64, row: impl Fn(f64) -> Vec<f64>) -> String {
+    let line = |at: u32| {
+        let time_s = 0.1 * f64::from(at);
+        let cells = std::iter::once(time_s).chain(row(time_s)).map(|cell| format!("{cell:.6}"));
+        cells.collect::<Vec<_>>().join(",") + "\n"
+    };
+    head.to_owned() + "\n" + &(0..=(10.0 * long_s) as u32).map(line).collect::<String>()
+}
+
+/// Root mean square of the error of speed [m/s], and what was told beside it.
+fn compared(place: &Place) -> (f64, String) {
+    let told = done(&[
+        "compare",
+        &place.path("scenario.ron"),
+        "--recording",
+        &place.path("recording.ron"),
+        "--out",
+        &place.path("out"),
+    ]);
+    let document = place.json("out/comparison.json");
+    (document["channels"][0]["rmse"].as_f64().unwrap(), told)
+}
+
+/// 1000 kg that roll at 10 m/s, driven by just their resistance of 196 N, are braked by 2 m/s² for 3 s and roll on.
+#[test]
+fn a_braked_stretch_is_followed_and_the_model_goes_on_from_there() {
+    let place = Place::new();
+    scenario(&place, "");
+    place.write("recording.ron", r#"(about: "braked", runs: [(id: "r1", file: "r1.csv")])"#);
+    let speed = |time_s: f64| 10.0 - 2.0 * (time_s - 10.0).clamp(0.0, 3.0);
+    let braked = |time_s: f64| f64::from((10.0..13.0).contains(&time_s));
+    let resistance_n = 0.02 * 1000.0 * 9.806_65;
+    place.write(
+        "r1.csv",
+        &log("time_s,speed_m_s,tractive_force_n,brake", 30.0, |time_s| {
+            vec![speed(time_s), resistance_n, braked(time_s)]
+        }),
+    );
+    let (error_m_s, told) = compared(&place);
+    // The fit of the recorded speed rounds the ends of the stretch off.
+    assert!(error_m_s < 0.1, "{error_m_s}: {told}");
+    assert!(told.contains("30 of 301 samples") && told.contains("brakes"), "{told}");
+    // Nobody who does not tell it of brakes is followed.
+    let text = std::fs::read_to_string(place.path("scenario.ron")).unwrap();
+    let end = text.trim_end().strip_suffix(')').unwrap();
+    place.write("scenario.ron", &format!("{end}    replay: (inputs: []),\n)"));
+    assert!(compared(&place).0 > 2.0);
+}
+
+/// Two coast-downs of one lane: v̇ = −c g, c of the second pass less by c₁ (1 − q).
+#[test]
+fn passes_of_one_path_are_counted() {
+    let place = Place::new();
+    scenario(&place, "multipass(coefficient: 0.01, factor: 0.5)");
+    let runs = r#"(
+    about: "two passes",
+    runs: [(id: "r1", file: "r1.csv", path: "lane"), (id: "r2", file: "r2.csv", path: "lane"), (id: "r3", file: "r1.csv", path: "fresh")],
+)"#;
+    place.write("recording.ron", runs);
+    for (name, coefficient) in [("r1.csv", 0.02), ("r2.csv", 0.015)] {
+        let speed = |time_s: f64| 10.0 - coefficient * 9.806_65 * time_s;
+        place.write(name, &log("time_s,speed_m_s,coasting", 20.0, |time_s| vec![speed(time_s), 1.0]));
+    }
+    let (error_m_s, told) = compared(&place);
+    assert!(error_m_s < 1e-3, "{error_m_s}: {told}");
+}
+
+/// A turn of 0.2 rad/s at 10 m/s: a side force of 2000 N drags by 2000²/100 000 = 40 N.
+#[test]
+fn curvature_is_made_of_the_rate_of_turn() {
+    let place = Place::new();
+    scenario(&place, "cornering_drag(cornering_stiffness_n_per_rad: 1e5)");
+    place.write("recording.ron", r#"(about: "a turn", runs: [(id: "r1", file: "r1.csv")])"#);
+    let turns = |time_s: f64| (10.0..30.0).contains(&time_s);
+    let force_n = |time_s: f64| 0.02 * 1000.0 * 9.806_65 + if turns(time_s) { 40.0 } else { 0.0 };
+    let log = log("time_s,speed_m_s,tractive_force_n,yaw_rate_rad_s", 40.0, |time_s| {
+        vec![10.0, force_n(time_s), if turns(time_s) { 0.2 } else { 0.0 }]
+    });
+    place.write("r1.csv", &log);
+    let (error_m_s, told) = compared(&place);
+    assert!(told.contains("it is made of `yaw_rate_rad_s`"), "{told}");
+    // Without it 40 N would speed 1000 kg up by 0.8 m/s in 20 s.
+    assert!(error_m_s < 0.03, "{error_m_s}: {told}");
+}
+
+/// All that is told without being asked, and the speed of the engine beside it.
+#[test]
+fn all_inputs_and_one_more_are_asked_for() {
+    let place = Place::new();
+    let text = super::help::SCENARIO.trim_end().strip_suffix(')').unwrap().to_owned();
+    place.write("scenario.ron", &format!("{text}    replay: (inputs: [All, Grade]),\n)"));
+    let (_, told) = compared(&place);
+    assert!(told.contains("driven   coasting"), "{told}");
+    place.write("scenario.ron", &format!("{text}    replay: (inputs: [All, EngineSpeed]),\n)"));
+    let told = super::help::refused(
+        2,
+        &["compare", &place.path("scenario.ron"), "--recording", &place.path("recording.ron")],
+    );
+    assert!(told.contains("engine_speed_rad_s"), "{told}");
+}

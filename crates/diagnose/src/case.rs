@@ -425,14 +425,22 @@ impl<'a> Case<'a> {
 
     /// Whether force or torque drives somewhere.
     pub fn driven(&self) -> bool {
-        self.runs.iter().any(|run| {
-            let coasting = run.measured.trace.get("coasting");
-            run.force_n.iter().flatten().enumerate().any(|(index, force)| {
-                let free = coasting.is_some_and(|coasting| coasting[index] >= 0.5);
-                !free && force.is_finite() && *force != 0.0
-            })
-        })
+        self.runs.iter().any(is_driven)
     }
+
+    /// Whether it drives in a run that is fitted.
+    pub fn fitted_is_driven(&self) -> bool {
+        self.runs.iter().zip(&self.fit).any(|(run, fit)| *fit && is_driven(run))
+    }
+}
+
+/// Whether force or torque drives a run somewhere.
+fn is_driven(run: &Recorded) -> bool {
+    let coasting = run.measured.trace.get("coasting");
+    run.force_n.iter().flatten().enumerate().any(|(index, force)| {
+        let free = coasting.is_some_and(|coasting| coasting[index] >= 0.5);
+        !free && force.is_finite() && *force != 0.0
+    })
 }
 
 /// The cause of which the way may know beforehand.

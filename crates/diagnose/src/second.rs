@@ -55,6 +55,7 @@ const FOLLOWS: f64 = 1.4;
 /// Whether runs are told better by another set of causes: those held out, and those fitted no worse, but for what `id` follows.
 fn is_better(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
     let claims = !other.findings.is_empty() && other.verdict != Verdict::None;
+    let left = measure(other, first);
     let errors = |fit: &Fit| (left(&fit.fitted), left(fit.held_out.as_ref().unwrap_or(&fit.fitted)));
     let ((fitted, held_out), (fitted_first, held_out_first)) = (errors(&other.fit), errors(&first.fit));
     claims
@@ -63,9 +64,15 @@ fn is_better(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
         && fitted < fitted_first * if id == MAP { FOLLOWS } else { 1.0 }
 }
 
-/// Share of the error that is left. What is driven forward in windows of another length has another error before, too.
-fn left(runs: &FitRuns) -> f64 {
-    runs.rmse_after / runs.rmse_before
+/// By what two sets of causes are measured: the error that is left where one signal tells of both, and else its share of that before.
+/// What is driven forward in windows of another length has another error before, too, and so has a power beside a force that was set
+/// right.
+fn measure(one: &Diagnosis, other: &Diagnosis) -> fn(&FitRuns) -> f64 {
+    if one.fit.signal == other.fit.signal && one.fit.signal != "speed_m_s" {
+        |runs| runs.rmse_after
+    } else {
+        |runs| runs.rmse_after / runs.rmse_before
+    }
 }
 
 /// Whether another opinion takes the place of the first, in which `id` was doubtful. A clock that runs apart is one thing, and so is a
@@ -74,6 +81,7 @@ fn left(runs: &FitRuns) -> f64 {
 fn wins(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
     let of_sensors = id == CLOCK || SCALES.contains(&id);
     let patches = of_sensors && other.findings.len() > first.findings.len();
+    let left = measure(other, first);
     let held_out = |one: &Diagnosis| Some((one.findings.len(), left(one.fit.held_out.as_ref()?)));
     let plainer = held_out(other).zip(held_out(first)).is_some_and(|(other, first)| is_plainer(other, first));
     let better = is_better(id, other, first) || of_sensors && plainer;

@@ -167,7 +167,7 @@ pub(crate) enum Combine {
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, rename = "sensor")]
 pub(crate) struct SensorDescription {
     #[serde(default)]
     pub noise: Option<f64>,

@@ -41,10 +41,11 @@ pub fn small_latency_s(case: &Case) -> f64 {
     period_s.min(0.5 * period_s + RECEIVER_S).max(FILTER_S)
 }
 
-/// Whether what has this size is no fault: less than anybody would mind, or more than any sensor is wrong by.
+/// Whether what has this size is no fault: less than anybody would mind, or more than any sensor is wrong by. What drives comes late
+/// only where something drives.
 pub fn is_no_fault(case: &Case, id: &str, value: f64) -> bool {
     match id {
-        "latency" => value.abs() <= small_latency_s(case),
+        "latency" => value.abs() <= small_latency_s(case) || value < 0.0 && !case.fitted_is_driven(),
         "clock_drift" => value.abs() * case.longest_s() <= small_latency_s(case),
         "speed_scale" => !(SMALL_SCALE..=MOST_SPEED_SCALE).contains(&value.abs()),
         "force_scale" => !(SMALL_SCALE..=MOST_SCALE).contains(&value.abs()),

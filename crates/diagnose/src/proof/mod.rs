@@ -8,5 +8,6 @@ pub(crate) mod mirror;
 pub(crate) mod prove;
 pub(crate) mod proven;
 pub(crate) mod refine;
+pub(crate) mod simpler;
 pub(crate) mod widths;
 pub(crate) mod withdraw;

@@ -206,7 +206,7 @@ impl<'a> Study<'a> {
             let length_m = path_length_m(recording, run.path.as_deref());
             let mut measured = measured(scenario, &model, run, length_m, &mut notes)?;
             let same = |other: &&RecordedRun| run.path.is_some() && other.path == run.path;
-            measured.how.passes_before = recording.runs[..number].iter().filter(same).count() as u32;
+            measured.how.passes_before = recording.runs[..number].iter().filter(same).count();
             runs.push(measured);
         }
         let mut parameters = Vec::new();

@@ -47,6 +47,15 @@ impl Failure {
         }
     }
 
+    /// A folder for results that cannot be made.
+    pub fn no_folder(path: &std::path::Path, error: &std::io::Error) -> Self {
+        let hint = "\n  results go there; --out names another folder";
+        match Self::unwritable(path, error) {
+            Self::Input(text) => Self::Input(text + hint),
+            other => other,
+        }
+    }
+
     /// A file that cannot be written: the user's folder, or the machine's disk.
     pub fn unwritable(path: &std::path::Path, error: &std::io::Error) -> Self {
         use std::io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};

@@ -45,7 +45,7 @@ impl Output {
             || Path::new("out").join(input.file_stem().unwrap_or(std::ffi::OsStr::new("result"))),
             Path::to_owned,
         );
-        std::fs::create_dir_all(&folder).map_err(|error| Failure::unwritable(&folder, &error))?;
+        std::fs::create_dir_all(&folder).map_err(|error| Failure::no_folder(&folder, &error))?;
         let whole = |path: &Path| path.canonicalize().ok();
         let beside =
             input.parent().map(|parent| if parent.as_os_str().is_empty() { Path::new(".") } else { parent });
@@ -95,7 +95,7 @@ impl Output {
     /// Makes a folder inside.
     pub fn folder(&self, name: &Path) -> Result<PathBuf, Failure> {
         let folder = self.folder.join(name);
-        std::fs::create_dir_all(&folder).map_err(|error| Failure::unwritable(&folder, &error))?;
+        std::fs::create_dir_all(&folder).map_err(|error| Failure::no_folder(&folder, &error))?;
         Ok(folder)
     }
 

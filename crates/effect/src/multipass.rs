@@ -66,7 +66,7 @@ impl Plugin for Multipass {
 
 impl Effect for Multipass {
     fn act(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Action {
-        let first = self.pass.map_or(f64::from(at.passes_before), |pass| pass - first());
+        let first = self.pass.map_or(at.passes_before as f64, |pass| pass - first());
         let before = first + (at.position_m / self.lap_length_m).floor().max(0.0);
         let change = self.factor.powf(before) - 1.0;
         Action { resistance_n: self.coefficient * change * load_n(at), ..Action::default() }

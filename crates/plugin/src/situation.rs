@@ -25,7 +25,7 @@ pub struct Situation {
     /// Whether the path is driven from its end towards its start; `place` is already seen in the direction of travel.
     pub reversed: bool,
     /// How often the path was driven before this run.
-    pub passes_before: u32,
+    pub passes_before: usize,
     /// Speed over ground [m/s].
     pub speed_m_s: f64,
     /// Acceleration along the motion [m/s²], for powers that follow it; 0 while forces are asked for, which make it.

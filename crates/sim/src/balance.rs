@@ -40,7 +40,7 @@ pub(crate) struct Given {
     /// Where the path is driven towards its start from [m]; positions then count what was travelled.
     pub reversed_from_m: Option<f64>,
     /// How often the path was driven before.
-    pub passes_before: u32,
+    pub passes_before: usize,
     /// Whether a vehicle at rest is to set off backward.
     pub backward: bool,
     pub sin_slope: Option<f64>,

@@ -47,7 +47,7 @@ pub struct Replay {
     /// Recorded positions count along the path where they fall, and from the run's own start where they grow.
     pub reversed_from_m: Option<f64>,
     /// How often the path was driven before.
-    pub passes_before: u32,
+    pub passes_before: usize,
     /// Whether the recorded motion is followed while somebody brakes, where `Inputs::Brake` is told and a recorded force or
     /// torque drives: how hard the brakes hold nobody recorded.
     pub follows_brakes: bool,
@@ -204,7 +204,7 @@ fn replayed(
 /// The recorded inputs.
 struct Tape<'a> {
     reversed_from_m: Option<f64>,
-    passes_before: u32,
+    passes_before: usize,
     time_s: &'a [f64],
     motion: LocalFit,
     position_m: Vec<f64>,

@@ -180,7 +180,7 @@ fn a_path_that_cannot_be_written_is_named() {
     place.write("taken", "a file, not a folder");
     let out = place.path("taken") + "/out";
     let told = refused(2, &["run", &place.path("scenario.ron"), "--out", &out]);
-    holds(&told, &["cannot write", "taken/out"]);
+    holds(&told, &["cannot write", "taken/out", "--out names another"]);
 }
 
 /// The page of the validation takes minutes to make: that it has no place is said before anything else is looked at.

@@ -13,13 +13,13 @@ fn scenario(place: &Place, effects: &str) {
 }
 
 /// Rows of 0.1 s for so long.
-fn log(head: &str, long_s: f64, row: impl Fn(f64) -> Vec<f64>) -> String {
+fn log(head: &str, long_s: u32, row: impl Fn(f64) -> Vec<f64>) -> String {
     let line = |at: u32| {
         let time_s = 0.1 * f64::from(at);
         let cells = std::iter::once(time_s).chain(row(time_s)).map(|cell| format!("{cell:.6}"));
         cells.collect::<Vec<_>>().join(",") + "\n"
     };
-    head.to_owned() + "\n" + &(0..=(10.0 * long_s) as u32).map(line).collect::<String>()
+    head.to_owned() + "\n" + &(0..=10 * long_s).map(line).collect::<String>()
 }
 
 /// Root mean square of the error of speed [m/s], and what was told beside it.
@@ -47,7 +47,7 @@ fn a_braked_stretch_is_followed_and_the_model_goes_on_from_there() {
     let resistance_n = 0.02 * 1000.0 * 9.806_65;
     place.write(
         "r1.csv",
-        &log("time_s,speed_m_s,tractive_force_n,brake", 30.0, |time_s| {
+        &log("time_s,speed_m_s,tractive_force_n,brake", 30, |time_s| {
             vec![speed(time_s), resistance_n, braked(time_s)]
         }),
     );
@@ -74,7 +74,7 @@ fn passes_of_one_path_are_counted() {
     place.write("recording.ron", runs);
     for (name, coefficient) in [("r1.csv", 0.02), ("r2.csv", 0.015)] {
         let speed = |time_s: f64| 10.0 - coefficient * 9.806_65 * time_s;
-        place.write(name, &log("time_s,speed_m_s,coasting", 20.0, |time_s| vec![speed(time_s), 1.0]));
+        place.write(name, &log("time_s,speed_m_s,coasting", 20, |time_s| vec![speed(time_s), 1.0]));
     }
     let (error_m_s, told) = compared(&place);
     assert!(error_m_s < 1e-3, "{error_m_s}: {told}");
@@ -88,7 +88,7 @@ fn curvature_is_made_of_the_rate_of_turn() {
     place.write("recording.ron", r#"(about: "a turn", runs: [(id: "r1", file: "r1.csv")])"#);
     let turns = |time_s: f64| (10.0..30.0).contains(&time_s);
     let force_n = |time_s: f64| 0.02 * 1000.0 * 9.806_65 + if turns(time_s) { 40.0 } else { 0.0 };
-    let log = log("time_s,speed_m_s,tractive_force_n,yaw_rate_rad_s", 40.0, |time_s| {
+    let log = log("time_s,speed_m_s,tractive_force_n,yaw_rate_rad_s", 40, |time_s| {
         vec![10.0, force_n(time_s), if turns(time_s) { 0.2 } else { 0.0 }]
     });
     place.write("r1.csv", &log);

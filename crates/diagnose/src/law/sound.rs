@@ -53,9 +53,29 @@ pub fn is_map(law: &Law, target: Target, (placed, from_one_place): (bool, bool))
 }
 
 /// Whether a shape is as well none of its own: the scale that it bends over may be anything, a straight line or a level among that,
-/// which other terms and free parameters take back.
+/// which other terms and free parameters take back. So is a bump of any width, and a step of which nobody knows where it is; how sharp one
+/// is the rows need not show.
 fn is_loose(law: &Law) -> bool {
+    /// A step is somewhere where its place is known to so many of its widths.
+    const WIDTHS: f64 = 3.0;
+    let half = |constant: &headland_symbolic::Constant| {
+        constant.sd.map_or(0.0, |sd| crate::proof::refine::HALF_95 * sd)
+    };
+    let named = |name: &str| law.constants.iter().find(|constant| constant.name == name);
+    let nowhere = law.text.split("tanh((").skip(1).any(|rest| {
+        let Some((inner, rest)) = rest.split_once(") / ") else { return false };
+        let place = inner.split(' ').find_map(named);
+        let width = rest.split(')').next().and_then(named);
+        place.zip(width).is_some_and(|(place, width)| half(place) > WIDTHS * width.value.max(half(width)))
+    });
     let scale = |constant: &headland_symbolic::Constant| {
+        let bump = law.text.split("exp(-((").skip(1).any(|rest| {
+            rest.split_once(") / ")
+                .is_some_and(|(_, rest)| rest.starts_with(&format!("{})^2", constant.name)))
+        });
+        if bump {
+            return true;
+        }
         ["tanh(", "exp(-", "(1 + "].iter().any(|shape| {
             let mut of = law.text.split(shape).skip(1).filter_map(|rest| rest.split(')').next());
             of.any(|inner| inner.ends_with(&format!("/ {}", constant.name)))
@@ -64,7 +84,7 @@ fn is_loose(law: &Law) -> bool {
     let loose = |constant: &headland_symbolic::Constant| {
         constant.sd.is_some_and(|sd| constant.value < crate::proof::refine::HALF_95 * sd)
     };
-    law.constants.iter().any(|constant| scale(constant) && loose(constant))
+    nowhere || law.constants.iter().any(|constant| scale(constant) && loose(constant))
 }
 
 /// Whether a law of a force hangs on the acceleration as a mass does, or as one does that was told too large.
@@ -157,6 +177,22 @@ mod tests {
             assert!(is_loose(&with_sd(text, 200.0)) && !is_loose(&with_sd(text, 100.0)), "{text}");
         }
         assert!(!is_loose(&with_sd("a1_n * (way / way1_m)", 200.0)));
+    }
+
+    /// A hinge of the slope that fades over 320 s by as much as it likes, and one that sets in somewhere between −200 and 240 s.
+    #[test]
+    fn a_bump_of_any_width_and_a_step_anywhere_bend_nothing() {
+        let with = |text: &str, sds: [f64; 2]| {
+            let mut law = law(text, &[("a1_n", 900.0), ("t1_s", 20.0), ("t2_s", 4.0)]);
+            (law.constants[1].sd, law.constants[2].sd) = (Some(sds[0]), Some(sds[1]));
+            law
+        };
+        let bump = "a1_n * exp(-((t - t1_s) / t2_s)^2) * max((slope1 - slope) / slope2, 0)";
+        assert!(is_loose(&with(bump, [1.0, 3.0])) && !is_loose(&with(bump, [1.0, 1.0])));
+        let step = "a1_n * 0.5 * (1 + tanh((t - t1_s) / t2_s)) * max((slope1 - slope) / slope2, 0)";
+        assert!(is_loose(&with(step, [110.0, 1.1])) && !is_loose(&with(step, [1.0, 1.1])));
+        // One that is as sharp as it may be is still known to be there.
+        assert!(!is_loose(&with(step, [1.0, 9.0])));
     }
 
     #[test]

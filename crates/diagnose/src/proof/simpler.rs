@@ -26,7 +26,8 @@ pub fn simpler(
     let far = |one: &Proven| {
         one.proof.held_out.is_some_and(|errors| errors.after > NEAR * noise(case, system, one, by.kind))
     };
-    while best.found.stand.parts.len() > 1 && far(&best) {
+    // What is driven forward shows all of them; no free parameter may have to say what a cause said.
+    while by.kind == Kind::Motion && best.found.stand.parts.len() > 1 && far(&best) {
         let mut least: Option<Proven> = None;
         for place in 0..best.found.stand.parts.len() {
             let state = State { case, system, pool, fit: &case.fit };
@@ -35,6 +36,7 @@ pub fn simpler(
             let lesser = Proven::of(case, system, pool, found, events, Some(by))?;
             let error = |one: &Proven| one.proof.held_out.map_or(f64::INFINITY, |errors| errors.after);
             let better = error(&lesser) < FAR_BETTER * error(&best)
+                && !lesser.strains_more_than(&best, case)
                 && lesser.proof.fitted.after < FAR_BETTER * best.proof.fitted.after;
             if better && least.as_ref().is_none_or(|least| error(&lesser) < error(least)) {
                 least = Some(lesser);

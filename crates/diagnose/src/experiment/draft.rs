@@ -128,7 +128,6 @@ pub fn drafted(
         acceleration_m_s2,
         position_m,
         path: base.path,
-        pass: base.pass,
         force_n: None,
         stands_in: Vec::new(),
         unknown: Vec::new(),

@@ -62,7 +62,7 @@ impl<'a> Stage<'a> {
         let (mut kept, mut runs) = (Vec::new(), Vec::new());
         for course in courses(case, &base, model.vehicle.mass_kg).into_iter().filter(tells) {
             if let Some(mut run) = drafted(case, &base, &course, &model)? {
-                run.pass = pass;
+                run.measured.how.passes_before = pass;
                 runs.push(run);
                 kept.push(course);
             }

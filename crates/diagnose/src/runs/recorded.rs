@@ -28,8 +28,6 @@ pub struct Recorded {
     pub placed: bool,
     /// The ground that it drove over: runs of the same number share it.
     pub path: usize,
-    /// How many runs drove this path before.
-    pub pass: usize,
     /// Force at the wheels that was measured [N]; NaN where it is not known.
     pub force_n: Option<Vec<f64>>,
     /// Samples whose speed is that of the wheels, for want of one over ground; empty where it is none.
@@ -58,7 +56,6 @@ const GUST_S: f64 = 5.0;
 /// Prepares the runs of a study.
 pub fn recorded(study: &Study, prepared: &Prepared, model: &Model) -> Vec<Recorded> {
     let mut paths: Vec<Option<String>> = Vec::new();
-    let mut passes: Vec<usize> = Vec::new();
     let mut all = Vec::new();
     let samples = prepared.stands_in.iter().zip(prepared.unknown.iter().zip(&prepared.leaps));
     let described = prepared.recording.runs.iter().zip(samples);
@@ -69,11 +66,8 @@ pub fn recorded(study: &Study, prepared: &Prepared, model: &Model) -> Vec<Record
         };
         let path = path.unwrap_or_else(|| {
             paths.push(described.path.clone());
-            passes.push(0);
             paths.len() - 1
         });
-        let pass = passes[path];
-        passes[path] += 1;
         let speed = measured.trace.get("speed_m_s").map(<[f64]>::to_vec).unwrap_or_default();
         let motion = local_fit(measured.trace.time_s(), &speed, measured.how.smoothing_s);
         let engine = engine(&measured.trace, model);
@@ -91,7 +85,6 @@ pub fn recorded(study: &Study, prepared: &Prepared, model: &Model) -> Vec<Record
             charge_j: charge(&measured.trace, model),
             motion,
             path,
-            pass,
             measured: Measured { trace: without_leaps(&steady_wind(&measured.trace)), ..measured.clone() },
         });
     }

@@ -111,21 +111,6 @@ pub struct Measured {
     pub compared: Vec<bool>,
 }
 
-impl Measured {
-    /// Sample by sample, whether the model follows the motion, since something drove that was not recorded.
-    pub fn followed(&self) -> Vec<bool> {
-        let told = |input: Inputs| self.how.also.contains(&input);
-        let on = |name: &str| self.trace.get(name).unwrap_or_default().iter().map(|value| *value >= 0.5);
-        match self.how.drive {
-            Drive::Coast if told(Inputs::Coasting) => on(COASTING).map(|coasting| !coasting).collect(),
-            Drive::Force | Drive::Torque if self.how.follows_brakes && told(Inputs::Brake) => {
-                on("brake").collect()
-            }
-            _ => vec![false; self.trace.len()],
-        }
-    }
-}
-
 /// A scenario with the recording that it is held against.
 #[derive(Clone)]
 pub struct Study<'a> {
@@ -564,7 +549,7 @@ fn measured(
     let compared = compared(&trace, smoothing_s, settings.least_acceleration_m_s2);
     let mut measured =
         Measured { id: run.id.clone(), trace, how, signals, held_out: run.held_out, known, compared };
-    let followed = measured.followed();
+    let followed = measured.how.followed(&measured.trace);
     measured.compared.iter_mut().zip(followed).for_each(|(compared, followed)| *compared &= !followed);
     Ok(measured)
 }

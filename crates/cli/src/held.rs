@@ -105,7 +105,7 @@ fn pair(run: &Measured, outcome: Outcome) -> Result<Pair, Failure> {
     let mut comparison = compare_traces(&run.id, &measured, &outcome.trace)?;
     // A total counts every sample, braked or not: energy does not care who stopped the vehicle.
     comparison.totals = compare_traces(&run.id, &run.trace, &outcome.trace)?.totals;
-    let followed = run.followed().iter().filter(|followed| **followed).count();
+    let followed = run.how.followed(&run.trace).iter().filter(|followed| **followed).count();
     Ok(Pair {
         // What is followed is not compared either.
         left_out: run.compared.iter().filter(|compared| !**compared).count() - followed,

@@ -9,7 +9,7 @@ use headland_scenario::Scenario;
 /// What a scenario and a recording make together.
 #[derive(Clone, Debug)]
 pub struct Together {
-    /// The balances, from the ground up.
+    /// The balances, from the ground up; where there are none the notes say what it would take.
     pub balances: Vec<Kind>,
     /// Runs that a diagnosis would fit.
     pub fitted: Vec<String>,
@@ -22,7 +22,7 @@ pub struct Together {
 /// Drives the nominal model with a recording once, and says which balances the two make.
 ///
 /// # Errors
-/// [`DiagnoseError`] where the two cannot be held together, or nothing that was measured makes a balance.
+/// [`DiagnoseError`] where the two cannot be held together.
 pub fn together(
     scenario: &Scenario,
     recording: &Recording,
@@ -30,17 +30,13 @@ pub fn together(
 ) -> Result<Together, DiagnoseError> {
     let options = Options::default();
     let case = Case::new(scenario, recording, registry, &options, &Silent)?;
+    let mut notes = case.study.notes.clone();
     if case.kinds.is_empty() {
-        return Err(DiagnoseError::NoBalance { channels: case.channels() });
+        notes.push(DiagnoseError::NoBalance { channels: case.channels() }.to_string());
     }
     let chosen = |fitted: bool| {
         let of = case.runs.iter().zip(&case.fit).filter(|(_, fit)| **fit == fitted);
         of.map(|(run, _)| run.measured.id.clone()).collect()
     };
-    Ok(Together {
-        fitted: chosen(true),
-        held_out: chosen(false),
-        notes: case.study.notes.clone(),
-        balances: case.kinds,
-    })
+    Ok(Together { fitted: chosen(true), held_out: chosen(false), notes, balances: case.kinds })
 }

@@ -4,7 +4,8 @@
 //!
 //! Source: Holm, *Journal of Terramechanics* 6 (1969), multi-pass behaviour: the increments of rut depth shrink from pass to
 //! pass; here as a geometric sequence.
-//! N is `pass` at the start, where it is left out that of a recorded run on its path, and grows by one with every lap where `lap_length_m` is given. q above 1 is ground that breaks up.
+//! N is `pass` at the start, where it is left out that of a recorded run on its path, and grows by one with every lap where
+//! `lap_length_m` is given. q above 1 is ground that breaks up.
 //! Fingerprint: resistance falls from run to run in the same lane, and a fresh lane brings it back.
 
 use crate::rolling_resistance::load_n;
@@ -47,7 +48,8 @@ impl Plugin for Multipass {
             parameter(
                 "pass",
                 "1",
-                "number of the pass at the start of the run, from 1, N; where it is left out, a replay counts the recorded runs of a path",
+                "number of the pass at the start of the run, from 1, N; where it is left out, a replay counts the recorded \
+                 runs of a path",
             )
                 .must_be(Bound::Positive)
                 .usually(1.0, 30.0)

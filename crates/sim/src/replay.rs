@@ -53,6 +53,27 @@ pub struct Replay {
     pub follows_brakes: bool,
 }
 
+impl Replay {
+    /// Sample by sample, whether the recorded motion is followed: something drives or brakes of which nothing is known but how the
+    /// vehicle moved.
+    pub fn followed(&self, recorded: &Trace) -> Vec<bool> {
+        let told = |input: Inputs| self.also.contains(&input);
+        let on = |input: Inputs| {
+            let switch = recorded.get(input.channels()[0]).unwrap_or_default();
+            switch.iter().map(|value| *value >= 0.5)
+        };
+        match self.drive {
+            Drive::Coast if told(Inputs::Coasting) => {
+                on(Inputs::Coasting).map(|coasting| !coasting).collect()
+            }
+            Drive::Force | Drive::Torque if self.follows_brakes && told(Inputs::Brake) => {
+                on(Inputs::Brake).collect()
+            }
+            _ => vec![false; recorded.len()],
+        }
+    }
+}
+
 /// A recorded circumstance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "each is named after its channel")]
@@ -210,6 +231,8 @@ struct Tape<'a> {
     position_m: Vec<f64>,
     /// Force at the wheels [N], or torque [N m], by what drives.
     push: Option<&'a [f64]>,
+    /// Whether the recorded motion is followed.
+    followed: Vec<bool>,
     also: Vec<(Inputs, Vec<&'a [f64]>)>,
     /// Empty where no vertical acceleration is told.
     shaking_m2_s4: Vec<f64>,
@@ -266,6 +289,7 @@ impl<'a> Tape<'a> {
             motion,
             position_m,
             push,
+            followed: how.followed(recorded),
             also,
             shaking_m2_s4,
             state_of_charge,
@@ -364,19 +388,6 @@ impl<'a> Tape<'a> {
         if self.is_backward(index) { speed } else { speed.max(0.0) }
     }
 
-    /// Whether something drives or brakes the vehicle of which nothing is known but how it moved.
-    fn is_followed(&self, how: &Replay, index: usize) -> bool {
-        let told = |input: Inputs| self.also.iter().find(|(own, _)| *own == input);
-        let is = |input: Inputs, on: bool| {
-            told(input).is_some_and(|(_, columns)| (columns[0][index] >= 0.5) == on)
-        };
-        match how.drive {
-            Drive::Coast => is(Inputs::Coasting, false),
-            Drive::Force | Drive::Torque => how.follows_brakes && is(Inputs::Brake, true),
-            Drive::Speed => false,
-        }
-    }
-
     /// Follows the recorded motion sample by sample. `command` is told the sample, the speed and whether it coasts, and
     /// says as well whether the motion is what drives.
     fn follow(
@@ -419,8 +430,8 @@ impl<'a> Tape<'a> {
         let mut window_start_s = self.time_s[0];
         for index in 0..self.time_s.len() {
             let (begin_s, next) = (self.time_s[index], (index + 1).min(self.time_s.len() - 1));
-            let followed = self.is_followed(how, index);
-            let starts = followed || index > 0 && self.is_followed(how, index - 1);
+            let followed = self.followed[index];
+            let starts = followed || index > 0 && self.followed[index - 1];
             if starts || how.window_s.is_some_and(|window_s| begin_s - window_start_s >= window_s) {
                 machine.set_motion(self.position_m[index], self.begun_m_s(index));
                 self.adopt_charge(&mut machine, index);

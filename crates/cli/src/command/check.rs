@@ -5,7 +5,7 @@ use crate::command::run::told_remark;
 use crate::failure::{Failure, told_recording};
 use crate::say::Say;
 use headland_batch::{Comparison, Plan};
-use headland_diagnose::{DiagnoseError, Kind, Together};
+use headland_diagnose::{Kind, Together};
 use headland_plugin::Registry;
 use headland_scenario::{Document, Scenario};
 use serde::Serialize;
@@ -76,15 +76,7 @@ fn held_together(registry: &Registry, scenario: &Path, recording: &Path) -> Resu
     let scenario = Scenario::read(scenario, registry).map_err(|error| Failure::Input(error.told()))?;
     let recording =
         headland_recording::load(recording).map_err(|error| Failure::Input(told_recording(&error)))?;
-    match headland_diagnose::together(&scenario, &recording, registry) {
-        Err(error @ DiagnoseError::NoBalance { .. }) => Ok(Together {
-            balances: Vec::new(),
-            fitted: Vec::new(),
-            held_out: Vec::new(),
-            notes: vec![error.to_string()],
-        }),
-        other => Ok(other?),
-    }
+    Ok(headland_diagnose::together(&scenario, &recording, registry)?)
 }
 
 fn told_together(one: &Together) -> String {

@@ -1,6 +1,6 @@
 //! What a replay is told by a recording, against motions that are known in closed form.
 
-use super::help::{Place, done};
+use super::help::Place;
 
 /// A cart without air drag.
 fn scenario(place: &Place, effects: &str) {
@@ -24,14 +24,9 @@ fn log(head: &str, long_s: u32, row: impl Fn(f64) -> Vec<f64>) -> String {
 
 /// Root mean square of the error of speed [m/s], and what was told beside it.
 fn compared(place: &Place) -> (f64, String) {
-    let told = done(&[
-        "compare",
-        &place.path("scenario.ron"),
-        "--recording",
-        &place.path("recording.ron"),
-        "--out",
-        &place.path("out"),
-    ]);
+    let output = place.compare();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let told = String::from_utf8(output.stdout).unwrap();
     let document = place.json("out/comparison.json");
     (document["channels"][0]["rmse"].as_f64().unwrap(), told)
 }

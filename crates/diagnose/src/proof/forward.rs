@@ -130,7 +130,7 @@ pub fn speeds(
     windows_s: &[Option<f64>],
 ) -> Result<Vec<Errors>, DiagnoseError> {
     let rmse = |model: &Model, run: &Recorded, how: &Replay| -> Result<f64, DiagnoseError> {
-        let followed = run.measured.followed();
+        let followed = run.measured.how.followed(&run.measured.trace);
         let sound =
             |index: usize| !followed[index] && case.sound.get(run.number).is_none_or(|sound| sound[index]);
         let measured = run.measured.trace.get("speed_m_s").unwrap_or(&[]);

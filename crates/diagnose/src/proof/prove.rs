@@ -70,8 +70,18 @@ pub struct Proof {
     pub scenarios: Vec<(Vec<usize>, String)>,
 }
 
+impl Proof {
+    /// Noise of the signal: that of its sensor, and where that is not known what its neighbouring rows differ by.
+    pub fn told_noise(&self, case: &Case, system: &System, found: Option<&Found>) -> f64 {
+        if self.noise.is_finite() {
+            return self.noise;
+        }
+        found.map_or(f64::NAN, |found| neighbours(case, system, found, self.signal))
+    }
+}
+
 /// What neighbouring rows of a signal differ by, where no sensor's noise is known: NaN where no balance has that signal.
-pub fn neighbours(case: &Case, system: &System, found: &Found, signal: &str) -> f64 {
+fn neighbours(case: &Case, system: &System, found: &Found, signal: &str) -> f64 {
     let number = system.kinds.iter().position(|kind| kind.signal() == signal);
     number.map_or(f64::NAN, |number| {
         let stand = &found.stand;

@@ -3,8 +3,7 @@
 use crate::balances::balance::Kind;
 use crate::causes::trial::Pool;
 use crate::choosing::state::State;
-use crate::proof::forward::speed_noise;
-use crate::proof::prove::{Measure, neighbours};
+use crate::proof::prove::Measure;
 use crate::proof::proven::Proven;
 use crate::proof::withdraw::lesser_set;
 use crate::single_runs::events::Event;
@@ -23,9 +22,7 @@ pub fn simpler(
     const NEAR: f64 = 3.0;
     /// Share of the error that has to be left.
     const FAR_BETTER: f64 = 0.5;
-    let far = |one: &Proven| {
-        one.proof.held_out.is_some_and(|errors| errors.after > NEAR * noise(case, system, one, by.kind))
-    };
+    let far = |one: &Proven| one.proof.held_out.is_some_and(|errors| errors.after > NEAR * one.proof.noise);
     // What is driven forward shows all of them; no free parameter may have to say what a cause said.
     while by.kind == Kind::Motion && best.found.stand.parts.len() > 1 && far(&best) {
         let mut least: Option<Proven> = None;
@@ -46,13 +43,4 @@ pub fn simpler(
         best = lesser;
     }
     Ok(best)
-}
-
-/// Noise of the signal of a balance, as it is told.
-pub fn noise(case: &Case, system: &System, best: &Proven, kind: Kind) -> f64 {
-    if kind == Kind::Motion {
-        speed_noise(case)
-    } else {
-        neighbours(case, system, &best.found, kind.signal())
-    }
 }

@@ -10,7 +10,7 @@ use crate::proof::mirror::is_whole;
 use crate::proof::prove::{Errors, Measure, prove};
 use crate::proof::proven::{Proven, RISES, held_out, is_worse};
 use crate::proof::refine::Cured;
-use crate::proof::simpler::{noise, simpler};
+use crate::proof::simpler::simpler;
 use crate::single_runs::events::Event;
 use crate::soundness::faults::Fault;
 use crate::told::words::each_once;
@@ -211,16 +211,15 @@ fn without_idle(
         telling = held_out(case).collect();
     }
     let measure = Measure { kind, ..best.proof.measure.clone() };
-    let errors = |one: &Proven| {
-        prove(case, system, &one.refined, &measure).map(|proof| Errors::over(&proof.each, &telling))
-    };
-    let (with, without) = (errors(best)?, errors(&lesser)?);
+    let own = prove(case, system, &best.refined, &measure)?;
+    let with = Errors::over(&own.each, &telling);
+    let without = Errors::over(&prove(case, system, &lesser.refined, &measure)?.each, &telling);
     if alone {
         let worse = with.zip(without).is_some_and(|(with, without)| is_worse(&with, &without));
         return Ok(worse.then_some((lesser, true)));
     }
     let Some((with, without)) = with.zip(without) else { return Ok(None) };
-    let noise = noise(case, system, best, kind);
+    let noise = own.told_noise(case, system, Some(&best.found));
     if cause.law.is_some() && without.after < LITTLE * noise && explained(&with, &without, noise) < SHARE {
         return Ok(Some((lesser, false)));
     }

@@ -10,7 +10,7 @@ use crate::choosing::search::Found;
 use crate::experiment::Proposals;
 use crate::proof::elsewhere::elsewhere;
 use crate::proof::forward::usual_window_s;
-use crate::proof::prove::{Errors, Measure, Proof, neighbours, prove};
+use crate::proof::prove::{Errors, Measure, Proof, prove};
 use crate::proof::refine::{Cured, Free, HALF_95, Refined};
 use crate::single_runs::events::Event;
 use crate::soundness::faults::Fault;
@@ -209,11 +209,7 @@ fn fit(case: &Case, system: &System, found: Option<&Found>, proof: &Proof) -> Fi
         runs: ids(case, wanted),
         rmse_before: errors.before,
         rmse_after: errors.after,
-        noise: if proof.noise.is_finite() {
-            proof.noise
-        } else {
-            found.map_or(f64::NAN, |found| neighbours(case, system, found, proof.signal))
-        },
+        noise: proof.told_noise(case, system, found),
     };
     let lack = match (&proof.held_out, proof.noise) {
         (Some(held), noise) if noise > 0.0 => held.after / noise,

@@ -4,7 +4,7 @@
 //! there; a clock that runs apart from the others moves the begin of a run little and its end much, and does a part of what a
 //! late speed does; a load that comes and goes in time follows what goes with the acceleration; and another scale of a force or a speed is all that goes with it, before a law that nobody listed can say what
 //! is missing, since sensors come first. A search that begins with one of them may not come back. Where one is claimed and looks
-//! like that, by lying off nought all along, by leaving more than noise or, of a scale, by standing beside physics, the runs are
+//! like that, by lying off nought all along, by leaving more than noise or, of a scale, by standing beside physics or leaving much, the runs are
 //! looked at once more without it, and the runs that were held out decide.
 
 use crate::choosing::rivals::twin;
@@ -25,7 +25,7 @@ const LOAD: &str = "payload_change";
 const LEVEL: &str = "rolling_resistance";
 /// What is left is this many times the noise, and more.
 const MORE_THAN_NOISE: f64 = 1.5;
-/// A course of a load that leaves so many times the noise is none of it.
+/// A course of a load, or another scale, that leaves so many times the noise is none of it.
 const MUCH_MORE: f64 = 4.0;
 /// The error with another set of causes has to be less than this share of what it is with the first.
 const BETTER: f64 = 0.85;
@@ -41,7 +41,8 @@ fn doubtful(findings: &[FindingReport], lack_of_fit: f64) -> Vec<Vec<&'static st
     let sought = |clock: &FindingReport| clock.evidence[0] > 0.0;
     let clock = (leaves && found(CLOCK).is_some_and(sought)).then_some(CLOCK);
     let physics = findings.iter().any(|finding| finding.kind != FindingKind::Artefact);
-    let scales = SCALES.into_iter().filter(|scale| physics && found(scale).is_some_and(sought));
+    let beside = physics || lack_of_fit > MUCH_MORE;
+    let scales = SCALES.into_iter().filter(|scale| beside && found(scale).is_some_and(sought));
     // Both together follow what pushes a vehicle to and fro.
     let both = clock.filter(|_| found(LATE).is_some_and(sought)).map(|clock| vec![clock, LATE]);
     let is_course = |load: &FindingReport| load.parameters.iter().any(|one| one.name.ends_with("_rms"));
@@ -171,6 +172,8 @@ mod tests {
             let own = || finding(Artefact, scale, None);
             assert_eq!(doubtful(&[own(), finding(Physics, "rolling_speed_law", None)], 1.0), [[scale]]);
             assert!(doubtful(&[own(), finding(Artefact, "quantisation", None)], 1.0).is_empty());
+            // What is in proportion to something else than the speed is no scale of it.
+            assert_eq!(doubtful(&[own()], 9.0), [[scale]]);
         }
         // Fewer causes have to be some, and leave no more.
         assert!(is_plainer((2, 0.070), (3, 0.078)) && !is_plainer((3, 0.070), (3, 0.078)));

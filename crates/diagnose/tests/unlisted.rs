@@ -13,7 +13,8 @@ use headland_scenario::Scenario;
 use headland_sim::simulate;
 use headland_trace::{Origin, Trace};
 use setting::{
-    found, found_of_scenario, named, recorded, recorded_of_scenario, recording_of_scenario, scenario,
+    found, found_of_scenario, named, recorded, recorded_of_scenario, recording_of, recording_of_scenario,
+    scenario,
 };
 use std::path::Path;
 
@@ -290,6 +291,42 @@ fn a_loss_that_goes_with_the_square_of_the_force_is_found_as_a_share_of_it() {
             law.equation
         );
     }
+}
+
+/// Wheels that slip the more the faster they turn: the listed slip goes with the pull alone.
+#[test]
+fn a_slip_that_grows_with_speed_is_found_between_wheels_and_ground() {
+    const PER_N: f64 = 5e-6;
+    const AT_M_S: f64 = 5.0;
+    let hidden = format!(
+        r#"expression(slip: "F_drive / f_n * (v / v0_m_s)^2", constants: {{"f_n": {:?}, "v0_m_s": {AT_M_S}}})"#,
+        1.0 / PER_N
+    );
+    let channels = ["speed_m_s", "wheel_speed_m_s", "tractive_force_n", "heading_rad"];
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" | "wheel_speed_m_s" => value + 0.01 * draws.normal(),
+        _ => value,
+    };
+    let recording = recording_of((0.069, &hidden), &headland_stock::registry(), &channels, (29, &noisy));
+    let found = found(&recording, &Options::default()).unwrap();
+    let w =
+        crate::found(&recording, &Options { without: vec!["speed_scale".to_owned()], ..Options::default() })
+            .unwrap();
+    let [law] = &found.diagnosis.findings[..] else { panic!("{}", found.diagnosis.answer) };
+    assert_eq!((law.kind, law.balance), (FindingKind::Unlisted, Kind::Slip), "{}", found.diagnosis.answer);
+    assert!(law.equation.starts_with("s = "), "{}", law.equation);
+    let registry = headland_stock::registry();
+    let improved = Scenario::of_text("improved.ron", &found.scenarios[0], Path::new(""), &registry).unwrap();
+    let model = improved.run(&improved.runs[0], &registry).unwrap().model(&registry).unwrap();
+    for (speed_m_s, force_n) in [(3.0, 9e3), (7.0, 9e3), (7.0, 5e3)] {
+        let situation = Situation { tractive_force_n: force_n, speed_m_s, ..Situation::default() };
+        let told: f64 = model.effects.iter().map(|one| one.plugin.act(&situation, &[], &mut []).slip).sum();
+        let truth = PER_N * force_n * (speed_m_s / AT_M_S).powi(2);
+        assert!((told / truth - 1.0).abs() < 0.1, "{speed_m_s} m/s: {told}, {truth}: {}", law.equation);
+    }
+    // Along the run that was held out it is what its wheels ran ahead by.
+    let along = found.effects.last().unwrap();
+    assert!(along.trace.get("unlisted_m_s").is_some());
 }
 
 /// What holds back on slopes, up and down alike, is a law of the slope that the scenario knows.

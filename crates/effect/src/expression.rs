@@ -1,15 +1,15 @@
-//! A force or a power as a formula of the situation, for what has no effect of its own.
+//! A force, a slip or a power as a formula of the situation, for what has no effect of its own.
 //!
-//! R = f(…), F = f(…), λ = f(…), P = f(…)        each a text in the notation of `expression/parser.rs`
+//! R = f(…), F = f(…), λ = f(…), s = f(…), P = f(…)        each a text in the notation of `expression/parser.rs`
 //!
 //! Source: the author of the scenario; empirical. Notation and units: `expression/names.rs` and `expression/units.rs`.
 //! A formula remembers how far the vehicle came since the run began, whether each of its switches is on, and what follows a value late
 //! (dy/dt = (u − y)/τ). A force may name the acceleration that it makes itself, as that of an overrun brake does, and not the force of
-//! the drive, of which a share may be lost. Units are checked
+//! the drive, of which a share may be lost, and by which wheels may slip. Units are checked
 //! when it is read: sums and comparisons need one unit, functions pure numbers, and the whole has to come out in newtons or
-//! watts, or as the pure number that a share is.
+//! watts, or as the pure number that a share or a slip is.
 //! Where a formula has no finite value the action has none either, nothing is clamped: a force stops the simulation, a
-//! power leaves the drive without any. A share of one or more has none either.
+//! power leaves the drive without any. A share or a slip of one or more has none either.
 //! Fingerprint: whatever it says.
 
 mod constants;
@@ -36,7 +36,7 @@ use serde::Deserialize;
 use std::ops::Range;
 use std::path::Path;
 
-/// Formulas of up to five of the things that an effect can do.
+/// Formulas of up to six of the things that an effect can do.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Expression {
@@ -46,6 +46,8 @@ pub struct Expression {
     force: Option<String>,
     #[serde(default)]
     loss_share: Option<String>,
+    #[serde(default)]
+    slip: Option<String>,
     #[serde(default)]
     auxiliary_power: Option<String>,
     #[serde(default)]
@@ -70,6 +72,8 @@ pub struct Expression {
     #[serde(skip)]
     loss: Option<Program>,
     #[serde(skip)]
+    slips: Option<Program>,
+    #[serde(skip)]
     auxiliary_power_w: Option<Program>,
     #[serde(skip)]
     shaft_power_w: Option<Program>,
@@ -81,15 +85,15 @@ const LOSS: &str = "loss_share";
 impl Plugin for Expression {
     const CARD: Card = Card {
         name: "expression",
-        about: "a force, a loss of the drive or a power as a formula of the situation",
-        equation: "R, F, λ, P = + - * / ^ < <= > >= == != ( ) min max clamp abs sign sqrt pow exp ln log10 sin cos tanh latched lagged of \
+        about: "a force, a loss of the drive, a slip or a power as a formula of the situation",
+        equation: "R, F, λ, s, P = + - * / ^ < <= > >= == != ( ) min max clamp abs sign sqrt pow exp ln log10 sin cos tanh latched lagged of \
                    v [m/s] acceleration [m/s²] F_drive [N] engine_speed [rad/s] x [m] way [m] t [s] heading [rad] kappa [1/m] slope [1] elevation [m] temperature [°C] oil_temperature [°C] state_of_charge [1] tyre_pressure [Pa] m [kg] \
                    g [m/s²] N [N] rho [kg/m³] area [m²] coasting [1] braking [1] headwind [m/s] crosswind [m/s] and \
                    constants",
         source: "the author of the scenario; empirical",
         validity: "units have to fit (a factor whose unit no name can say is written as quotients: p_w * (F_drive / f_n)^2); comparisons are 1 or 0; latched(u, on, off) is a switch that goes on at one value of u and off at another; lagged(u, τ) follows u with the time constant τ, settled when the run begins; way is the distance \
                    driven since the run began; slope is the sine, N = m g cos θ the normal load, the cross \
-                   wind comes from the right; oil_temperature and tyre_pressure have to be recorded, state_of_charge where the driveline has no battery; of what forces make powers may name all, resistance and force the acceleration (one is sought that the forces make which it makes), loss_share F_drive, the force of the drive before that loss; a force that is not finite stops the simulation, \
+                   wind comes from the right; oil_temperature and tyre_pressure have to be recorded, state_of_charge where the driveline has no battery; of what forces make powers may name all, resistance and force the acceleration (one is sought that the forces make which it makes), loss_share and slip F_drive, the force of the drive before that loss; a force that is not finite stops the simulation, \
                    such a power leaves the drive without any",
         parameters: &[
             parameter(
@@ -102,6 +106,11 @@ impl Plugin for Expression {
                 "loss_share",
                 "1 (formula)",
                 "share of the force of the drive that is lost on its way to the ground, λ",
+            ),
+            parameter(
+                "slip",
+                "1 (formula)",
+                "slip of the driven wheels, s: they turn as if the speed were v / (1 − s)",
             ),
             parameter("auxiliary_power", "W (formula)", "electric power that is taken beside the drive, P"),
             parameter(
@@ -124,6 +133,7 @@ impl Plugin for Expression {
             ("resistance", &self.resistance, "N", &mut self.resistance_n),
             ("force", &self.force, "N", &mut self.force_n),
             (LOSS, &self.loss_share, "1", &mut self.loss),
+            ("slip", &self.slip, "1", &mut self.slips),
             ("auxiliary_power", &self.auxiliary_power, "W", &mut self.auxiliary_power_w),
             ("shaft_power", &self.shaft_power, "W", &mut self.shaft_power_w),
         ];
@@ -139,7 +149,7 @@ impl Plugin for Expression {
                 let found = format!("\"{}\" in {}", Fault::quote(text, 0..text.len()), compiled.dimension);
                 return Err(refuse(name, &found, &format!("a formula in {unit}")));
             }
-            // An acceleration is found that the forces make which hang on it, and what is lost of a force with that force.
+            // An acceleration is found that the forces make which hang on it, and with a force what is lost of it and how wheels slip.
             let agrees = match unit {
                 "N" => Some(ACCELERATION),
                 "1" => Some(DRIVE),
@@ -161,8 +171,7 @@ impl Plugin for Expression {
             *program = Some(compiled.program);
         }
         if !given {
-            let expected =
-                "at least one of `resistance`, `force`, `loss_share`, `auxiliary_power`, `shaft_power`";
+            let expected = "at least one of `resistance`, `force`, `loss_share`, `slip`, `auxiliary_power`, `shaft_power`";
             return Err(refuse("expression", "without a formula", expected));
         }
         match constants.iter().zip(used).find(|(_, used)| !used) {
@@ -177,13 +186,14 @@ impl Plugin for Expression {
 
 impl Expression {
     fn programs(&self) -> impl Iterator<Item = &Program> {
-        let all =
-            [&self.resistance_n, &self.force_n, &self.loss, &self.auxiliary_power_w, &self.shaft_power_w];
-        all.into_iter().flatten()
+        let forces = [&self.resistance_n, &self.force_n, &self.loss, &self.slips];
+        let powers = [&self.auxiliary_power_w, &self.shaft_power_w];
+        forces.into_iter().chain(powers).flatten()
     }
 }
 
-/// A share; NaN where it is none, because a drive that loses all its force or as much again moves nothing.
+/// A share; NaN where it is none, because a drive that loses all its force or as much again moves nothing, and wheels that slip by all
+/// their speed neither.
 fn share(value: f64) -> f64 {
     if value.abs() < 1.0 { value } else { f64::NAN }
 }
@@ -230,6 +240,7 @@ impl Effect for Expression {
             resistance_n: value(&self.resistance_n),
             force_n: value(&self.force_n),
             loss_share: share(value(&self.loss)),
+            slip: share(value(&self.slips)),
             auxiliary_power_w: value(&self.auxiliary_power_w),
             shaft_power_w: value(&self.shaft_power_w),
             ..Action::default()

@@ -27,7 +27,9 @@ pub struct Action {
     pub upstream_share: f64,
     /// Force against the motion that is lost before that place [N].
     pub upstream_n: f64,
-    /// Slip for each newton at the wheels [1/N]: they turn as if the speed were v / (1 − s).
+    /// Slip whatever the force: the wheels turn as if the speed were v / (1 − s).
+    pub slip: f64,
+    /// Slip for each newton at the wheels [1/N], more where they drive and less where they brake.
     pub slip_per_n: f64,
     /// What is added to that for each newton at the wheels, driving or braking [1/N²]: slip that grows faster than the pull.
     pub slip_per_n2: f64,
@@ -41,6 +43,11 @@ impl Action {
     /// Slip for each newton at the wheels, where so many act there [1/N].
     pub fn slip_per_n_at(&self, force_n: f64) -> f64 {
         self.slip_per_n + self.slip_per_n2 * force_n.abs()
+    }
+
+    /// Slip of wheels that drive with a force, in the direction of the motion [N]; negative where they brake.
+    pub fn slip_at(&self, driving_n: f64) -> f64 {
+        self.slip + self.slip_per_n_at(driving_n) * driving_n
     }
 }
 

@@ -110,8 +110,10 @@ pub(crate) struct Instant {
     pub wheel_speed_m_s: f64,
     /// Force of the driveline before what is lost upstream [N].
     pub transmitted_n: f64,
-    /// Power that slip takes for each 1/N of it [W N].
-    pub slip_w_n: f64,
+    /// Force at the wheels in the direction of the motion [N],
+    pub driving_n: f64,
+    /// and the power that slip takes of it, for each part of one [W].
+    pub per_slip_w: f64,
     /// Slip of the driveline's speed, without what effects add.
     pub slip: f64,
     /// Power that it takes [W].
@@ -131,7 +133,7 @@ impl Instant {
         let upstream_n = action.upstream_n + action.upstream_share * self.transmitted_n.abs();
         action.auxiliary_power_w
             + action.shaft_power_w
-            + action.slip_per_n_at(self.delivery.force_n) * self.slip_w_n
+            + action.slip_at(self.driving_n) * self.per_slip_w
             + upstream_n * self.demand.speed_m_s.abs()
     }
 }
@@ -496,6 +498,7 @@ impl Model {
             sums.loss_share += action.loss_share;
             sums.upstream_share += action.upstream_share;
             sums.upstream_n += action.upstream_n;
+            sums.slip += action.slip;
             sums.slip_per_n += action.slip_per_n;
             sums.slip_per_n2 += action.slip_per_n2;
             sums.engine_friction_n_m += action.engine_friction_n_m;
@@ -537,6 +540,7 @@ pub(crate) struct Sums {
     pub loss_share: f64,
     pub upstream_share: f64,
     pub upstream_n: f64,
+    pub slip: f64,
     pub slip_per_n: f64,
     pub slip_per_n2: f64,
     pub engine_friction_n_m: f64,
@@ -547,14 +551,15 @@ pub(crate) struct Sums {
 }
 
 impl Sums {
-    /// Slip for each newton at the wheels, where so many act there [1/N].
-    fn slip_per_n_at(&self, force_n: f64) -> f64 {
-        self.slip_per_n + self.slip_per_n2 * force_n.abs()
+    /// Slip that effects make of wheels that drive with a force, in the direction of the motion [N].
+    fn slip_at(&self, driving_n: f64) -> f64 {
+        let Self { slip, slip_per_n, slip_per_n2, .. } = *self;
+        Action { slip, slip_per_n, slip_per_n2, ..Action::default() }.slip_at(driving_n)
     }
 
     /// Whether effects make the wheels slip.
     pub fn slips(&self) -> bool {
-        self.slip_per_n != 0.0 || self.slip_per_n2 != 0.0
+        self.slip != 0.0 || self.slip_per_n != 0.0 || self.slip_per_n2 != 0.0
     }
 
     /// Speed of wheels that effects make slip [m/s], which would roll at another in this direction.
@@ -562,8 +567,7 @@ impl Sums {
         if !self.slips() {
             return rolling_m_s;
         }
-        let slip = self.slip_per_n_at(force_n) * force_n * direction;
-        rolling_m_s / (1.0 - slip.clamp(-MOST_SLIP, MOST_SLIP))
+        rolling_m_s / (1.0 - self.slip_at(force_n * direction).clamp(-MOST_SLIP, MOST_SLIP))
     }
 }
 
@@ -580,6 +584,9 @@ pub(crate) fn tell(
     let Rolled { delivery, demand, rolling_m_s, .. } = *rolled;
     let mut situation = asked.situation;
     situation.tractive_force_n = delivery.force_n;
+    let driving_n = delivery.force_n * asked.direction;
+    let slip = sums.slip_at(driving_n);
+    let slipping_w = delivery.force_n * (demand.speed_m_s - rolling_m_s);
     let instant = Instant {
         acceleration_m_s2: rolled.acceleration_m_s2,
         situation,
@@ -597,11 +604,8 @@ pub(crate) fn tell(
         hydraulic_power_w: sums.hydraulic_power_w,
         transmitted_n: sums.transmitted_n(delivery.force_n, asked.way()),
         wheel_speed_m_s: if rolled.locked { 0.0 } else { demand.speed_m_s },
-        slip_w_n: {
-            let per_n = sums.slip_per_n_at(delivery.force_n);
-            let slipping_w = delivery.force_n * (demand.speed_m_s - rolling_m_s);
-            if per_n == 0.0 { 0.0 } else { slipping_w / per_n }
-        },
+        driving_n,
+        per_slip_w: if slip == 0.0 { 0.0 } else { slipping_w / slip },
         slip: rolled.slip,
         slip_w: delivery.force_n * rolling_m_s - rolled.traction_n * situation.speed_m_s,
         locked: rolled.locked,

@@ -267,6 +267,45 @@ fn slip_that_grows_with_the_pull_shares_its_power_with_slip_that_does_not() {
     assert!(outcome.ledger.relative_residual() < 1e-9, "{:?}", outcome.ledger);
 }
 
+/// Half of the same slip is there whatever the pull: each of two effects takes half of the 222.2 W.
+#[test]
+fn slip_whatever_the_pull_shares_its_power_with_slip_that_grows_with_it() {
+    let even = does(Action { slip: 0.05, ..Action::default() });
+    let grows = does(Action { slip_per_n: 2.5e-4, ..Action::default() });
+    let outcome = hold(&model(vec![even, grows]));
+    assert!((last(&outcome, "wheel_speed_m_s") - 10.0 / 0.9).abs() < 1e-9);
+    for effect in ["effect_0_w", "effect_1_w"] {
+        assert!((last(&outcome, effect) - 1000.0 / 9.0).abs() < 1e-6, "{effect}");
+    }
+    assert!(outcome.ledger.relative_residual() < 1e-9, "{:?}", outcome.ledger);
+}
+
+/// Slips by a part for each newton of the drive, as it learns of that.
+#[derive(Debug)]
+struct Creeps {
+    per_n: f64,
+}
+
+impl Effect for Creeps {
+    fn follows_drive(&self) -> bool {
+        true
+    }
+
+    fn act(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Action {
+        Action { slip: self.per_n * at.tractive_force_n, ..Action::default() }
+    }
+}
+
+/// 200 N by 0.0005 of each, told once as a slope and once as a slip that asks for the force: the same wheels and the same power.
+#[test]
+fn a_slip_that_asks_for_the_force_is_the_one_that_goes_with_it() {
+    let told = hold(&model(vec![does(Action { slip_per_n: 5e-4, ..Action::default() })]));
+    let asked = hold(&model(vec![Box::new(Creeps { per_n: 5e-4 })]));
+    for channel in ["wheel_speed_m_s", "effect_0_w", "tractive_force_n"] {
+        assert!((last(&told, channel) - last(&asked, channel)).abs() < 1e-9, "{channel}");
+    }
+}
+
 /// Gives nothing, as a driveline that nobody described.
 #[derive(Debug)]
 struct Idle;

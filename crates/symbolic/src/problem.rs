@@ -11,7 +11,7 @@ pub enum Target {
     Force,
     /// Watts.
     Power,
-    /// A pure number: the share of the drive force that is lost on its way.
+    /// A pure number: the share of the drive force that is lost on its way, or the slip of wheels.
     Share,
 }
 

@@ -31,7 +31,7 @@ impl Own {
 }
 
 /// The formulas of the effect `expression`.
-const FORMULAS: [&str; 5] = ["resistance", "force", "loss_share", "auxiliary_power", "shaft_power"];
+const FORMULAS: [&str; 6] = ["resistance", "force", "loss_share", "slip", "auxiliary_power", "shaft_power"];
 /// What would show a cause of which nothing else is known.
 const EXPERIMENT: &str = "repeat the run where the effect would be stronger, and where it would be weaker";
 

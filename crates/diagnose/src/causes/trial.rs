@@ -289,6 +289,15 @@ pub fn lost_drive_n(case: &Case) -> Result<Vec<Vec<f64>>, DiagnoseError> {
 /// Samples of every run, by the balance that they show in.
 pub type Shown = Vec<(Kind, Vec<Vec<f64>>)>;
 
+/// What wheels that slip by all their speed would make of each balance that slip shows in, sample by sample, by how a little slip shows.
+pub fn per_slip(case: &Case, system: &System) -> Result<Shown, DiagnoseError> {
+    /// A slip that leaves speeds and powers in proportion to it, nearly.
+    const SLIP: f64 = 1e-3;
+    let slip = Cause::slip();
+    let text = slip.written(&[SLIP]);
+    shown(case, system, &slip, SLIP, &|_| text.clone())
+}
+
 /// What a newton against the motion makes of each balance that such a force shows in, sample by sample.
 pub fn per_newton(case: &Case, system: &System) -> Result<Shown, DiagnoseError> {
     /// A force that any vehicle can bear [N].

@@ -4,7 +4,7 @@ use crate::balances::balance::Kind;
 use crate::balances::noise::Whiteners;
 use crate::balances::rows::Row;
 use crate::causes::catalogue::Cause;
-use crate::causes::trial::{Pool, Shown, effect, lost_drive_n, per_newton};
+use crate::causes::trial::{Pool, Shown, effect, lost_drive_n, per_newton, per_slip};
 use crate::choosing::state::{Part, Stand, State};
 use crate::law::nameable::{agreed_m_s2, moved_m_s2, variables, way_is_place};
 use crate::line::Line;
@@ -51,6 +51,7 @@ impl Sought {
         let shows = match (target, kind) {
             (Target::Share, Kind::Motion) if !case.driven() => return Ok(None),
             (Target::Share, Kind::Motion) => vec![(kind, lost_drive_n(case)?)],
+            (Target::Share, Kind::Slip) => per_slip(case, system)?,
             (Target::Force, _) => per_newton(case, system)?,
             (Target::Share, _) => of_powers(case, system, kind, &driven_w(case))?,
             (Target::Power, _) => of_powers(case, system, kind, &ones(case))?,
@@ -77,6 +78,11 @@ impl Sought {
             accelerations_m_s2,
             shows,
         }))
+    }
+
+    /// Whether a share of the drive's force is sought that is lost on its way; a slip is a share of the speed.
+    fn loses(&self) -> bool {
+        self.target == Target::Share && self.kind != Kind::Slip
     }
 
     /// The same by a formula that names neither times nor places.
@@ -111,10 +117,29 @@ impl Sought {
         bent.any(|term| straight(&term.prediction, accelerations) > NEARLY || steepest_kg(term) > own_kg)
     }
 
-    /// The same once a law is known: the vehicle accelerates as it does with that, where that hangs on the acceleration.
+    /// Whether a law is found more truly once it is known: one that hangs on the acceleration that it makes, or a slip, which makes the
+    /// more of wheels the more they slip.
+    pub fn makes_itself(&self, law: &Law) -> bool {
+        self.hangs(law) || self.kind == Kind::Slip
+    }
+
+    /// The same once a law is known: the vehicle accelerates as it does with that, where that hangs on the acceleration, and wheels that
+    /// slip turn as they do with it, by v_w − v = s v / (1 − s).
     pub fn moved_by(&self, case: &Case, law: &Law) -> Self {
+        /// Of wheels that slip more than this nothing is in proportion.
+        const MOST: f64 = 0.5;
         let moved_m_s2 = self.hangs(law).then(|| moved_m_s2(case, &law.prediction));
-        Self { accelerations_m_s2: moved_m_s2.or_else(|| self.accelerations_m_s2.clone()), ..self.clone() }
+        let mut shows = self.shows.clone();
+        if self.kind == Kind::Slip {
+            let slip = shows.iter_mut().filter(|(kind, _)| *kind == Kind::Slip);
+            for (samples, slips) in slip.flat_map(|(_, runs)| runs.iter_mut().zip(&law.prediction)) {
+                for (sample, slip) in samples.iter_mut().zip(slips) {
+                    *sample /= 1.0 - slip.clamp(-MOST, MOST);
+                }
+            }
+        }
+        let accelerations_m_s2 = moved_m_s2.or_else(|| self.accelerations_m_s2.clone());
+        Self { accelerations_m_s2, shows, ..self.clone() }
     }
 
     /// The same of the drive without what its force answers, sample by sample of every run [N].
@@ -179,7 +204,7 @@ impl Sought {
 
     /// The size of the drive's force and what a law says is lost of it, sample by sample [N]; none where no share is sought.
     fn forces_and_losses_n<'a>(&'a self, law: &'a Law) -> impl Iterator<Item = (f64, f64)> + 'a {
-        let runs = law.prediction.iter().zip(&self.drive_n).filter(|_| self.target == Target::Share);
+        let runs = law.prediction.iter().zip(&self.drive_n).filter(|_| self.loses());
         let pairs = runs.flat_map(|(shares, drive_n)| shares.iter().zip(drive_n));
         pairs.map(|(share, drive_n)| (drive_n.abs(), share * drive_n.abs()))
     }
@@ -192,7 +217,7 @@ impl Sought {
         if !self.somewhen {
             all.retain(|variable| !["t", "x"].contains(&variable.name.as_str()));
         }
-        if self.target == Target::Share {
+        if self.loses() {
             all.retain(|variable| OF_A_DRIVE.contains(&variable.name.as_str()));
         }
         // What an engine gives beside its wheels goes with the size of their force, whichever way that acts: its sign is that of a power

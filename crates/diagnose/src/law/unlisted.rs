@@ -21,12 +21,14 @@ use headland_symbolic::{Law, Target};
 const DOUBT: f64 = 0.5;
 /// A consumer that may take any course is not told by a formula beyond so many rows, nor is one looked for in the place of each cause.
 const LONG_ROWS: usize = 8_000;
-/// Rounds in which a law of the acceleration is made anew by the one that it makes.
+/// Rounds in which a law of the acceleration is made anew by the one that it makes, and one of slip by that.
 const ROUNDS_OF_ITSELF: usize = 3;
 /// Where what lasts of the noise is less than this share of that of the sensors, nothing is left that another law could say better.
 const WANDERS: f64 = 0.1;
 /// What acts on the motion.
 const FORCES: [(Kind, Target); 2] = [(Kind::Motion, Target::Force), (Kind::Motion, Target::Share)];
+/// What acts between the wheels and the ground.
+const SLIPS: [(Kind, Target); 1] = [(Kind::Slip, Target::Share)];
 /// Causes that hide each other bring beside one another up to so many times what the best of them brings alone.
 const HARDLY: f64 = 3.0;
 
@@ -50,8 +52,9 @@ pub fn unlisted(
         (Kind::Fuel, Target::Power),
     ];
     let (found, of_forces) = among(case, system, pool, found, &FORCES)?;
+    let (found, of_slips) = among(case, system, pool, found, &SLIPS)?;
     let (found, of_powers) = among(case, system, pool, found, &POWERS)?;
-    let as_good = of_forces.into_iter().chain(of_powers);
+    let as_good = of_forces.into_iter().chain(of_slips).chain(of_powers);
     Ok((found, as_good.max_by(|one, other| worth(one).total_cmp(&worth(other)))))
 }
 
@@ -185,9 +188,9 @@ fn candidates(
             candidates.extend(std::iter::once(part).chain(listed).map(with));
         }
         // Once more with the noise that is left then: what was fitted to the whole mismatch hides slow laws. What hangs on an
-        // acceleration that it makes itself knows that better every time.
+        // acceleration that it makes itself knows that better every time, and so does a slip that grows with itself.
         let with = |part: &Part| start.iter().cloned().chain([part.clone()]).collect::<Vec<Part>>();
-        for _ in 0..if sought.hangs(&law) { ROUNDS_OF_ITSELF } else { 1 } {
+        for _ in 0..if sought.makes_itself(&law) { ROUNDS_OF_ITSELF } else { 1 } {
             let state = State { case, system, pool, fit: &case.fit };
             if let Some(settled) = state.settle(&with(&part), &found.stand.noises)
                 && (rows <= MANY_ROWS || worth(&settled) > worth(&found.stand))
@@ -196,7 +199,7 @@ fn candidates(
                     first_sound(case, laws(case, system, pool, &start, &settled, &moved)?, &moved)
             {
                 law = better;
-                part = add(case, system, pool, &law, sought);
+                part = add(case, system, pool, &law, &moved);
             }
         }
         candidates.push(with(&part));

@@ -150,6 +150,20 @@ fn a_share_of_the_drive_may_be_lost_and_never_all_of_it() {
     assert!(message.contains("in N, expected a formula in 1"), "{message}");
 }
 
+/// (10 / 5)² · 4 kN / 200 kN = 0.08 of slip; all of the speed is none.
+#[test]
+fn wheels_may_slip_by_the_force_of_the_drive_and_never_by_all_their_speed() {
+    let slips = |force_n: f64| {
+        let text = "(slip: \"(v / v0_m_s)^2 * F_drive / f_n\", constants: {\"v0_m_s\": 5.0, \"f_n\": 200e3})";
+        let pulling = Situation { tractive_force_n: force_n, ..at_10_m_s() };
+        act::<Expression>(text, &pulling)
+    };
+    assert!(same(slips(4e3).slip, 0.08) && same(slips(4e3).loss_share, 0.0));
+    assert!(same(slips(-4e3).slip, -0.08) && slips(60e3).slip.is_nan());
+    let message = build::<Expression>("(slip: \"f_n\", constants: {\"f_n\": 1.0})").unwrap_err();
+    assert!(message.contains("in N, expected a formula in 1"), "{message}");
+}
+
 #[test]
 fn constants_are_in_the_units_of_their_names() {
     assert!(same(force_n("one_n * sin(a_deg)", "\"a_deg\": 30.0"), 0.5));

@@ -299,6 +299,7 @@ impl Cause {
         match &self.law {
             Some(LawText { role: "resistance", text, .. }) => format!("F = {text}"),
             Some(LawText { role: "loss_share", text, .. }) => format!("F = |F_drive| ({text})"),
+            Some(LawText { role: "slip", text, .. }) => format!("s = {text}"),
             Some(LawText { text, .. }) => format!("P = {text}"),
             None => self.equation.to_owned(),
         }

@@ -1,6 +1,6 @@
 //! An equation that was found, as a scenario writes it.
 
-use super::{Cause, Class, Form, MOTION, Term};
+use super::{Cause, Class, Form, MOTION, SLIPS, Term};
 use crate::balances::balance::Kind;
 use headland_symbolic::Target;
 
@@ -30,8 +30,9 @@ pub const CHANNELS: [(&str, &str); 18] = [
     ("crosswind", "wind_speed_m_s"),
 ];
 
-/// What a law of a force is in the effect `expression`.
+/// What a law of a force is in the effect `expression`, and one of how wheels slip.
 const RESISTANCE: &str = "resistance";
+const SLIP: &str = "slip";
 
 /// An equation that was found, as scenarios write it.
 #[derive(Clone, Debug)]
@@ -77,19 +78,19 @@ impl LawText {
     pub fn new(law: &headland_symbolic::Law, target: Target, kind: Kind) -> Self {
         /// Every piece of it was one of about a dozen: ln of that.
         const PER_PIECE: f64 = 2.5;
-        let named = |(name, _): &(&'static str, &'static str)| {
-            law.names(name) || target == Target::Share && *name == "F_drive"
-        };
+        let lost = target == Target::Share && kind != Kind::Slip;
+        let named = |(name, _): &(&'static str, &'static str)| law.names(name) || lost && *name == "F_drive";
         let mut depends_on: Vec<_> = CHANNELS.into_iter().filter(named).map(|(_, channel)| channel).collect();
         depends_on.dedup();
         Self {
             role: match target {
                 Target::Force => RESISTANCE,
+                Target::Share if kind == Kind::Slip => SLIP,
                 Target::Share if kind == Kind::Motion => "loss_share",
                 Target::Share | Target::Power => "auxiliary_power",
             },
             text: match target {
-                Target::Share if kind != Kind::Motion => format!("abs(F_drive * v) * ({})", law.text),
+                Target::Share if lost && kind != Kind::Motion => format!("abs(F_drive * v) * ({})", law.text),
                 _ => law.text.clone(),
             },
             constants_text: law.constants_text(),
@@ -125,12 +126,18 @@ impl Cause {
         Self::of_law(LawText::constant(RESISTANCE, "force_n"), Kind::Motion)
     }
 
+    /// Wheels that slip by a share of their speed, whatever the force.
+    pub fn slip() -> Self {
+        Self::of_law(LawText::constant(SLIP, "slip"), Kind::Slip)
+    }
+
     /// A cause that is a law.
     pub fn of_law(law: LawText, kind: Kind) -> Self {
         let balances: &'static [Kind] = match kind {
             // What resists shows in the powers that it takes; a share that is lost, in what is left of the force.
             Kind::Motion if law.role == RESISTANCE => MOTION,
             Kind::Motion => &[Kind::Motion],
+            Kind::Slip => SLIPS,
             Kind::Shaft | Kind::Fuel => &[Kind::Fuel],
             _ => &[Kind::Battery],
         };

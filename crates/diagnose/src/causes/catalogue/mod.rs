@@ -79,6 +79,8 @@ const MOST_WIND_M_S: f64 = 20.0;
 const SLOWEST_REFERENCE_M_S: f64 = 0.5;
 
 const MOTION: &[Kind] = &[Kind::Motion, Kind::Battery, Kind::Fuel];
+/// Where slip shows: force times the difference of speeds is taken from the engine, and alone it could be any loss in proportion to load.
+const SLIPS: &[Kind] = &[Kind::Slip, Kind::Fuel];
 
 /// A rolling resistance that depends otherwise on speed, with the stated level at a speed.
 fn speed_law(around: &Around, reference_m_s: f64) -> Cause {

@@ -1,8 +1,8 @@
 //! Faults of sensors that a model can tell.
 
-use super::Around;
 use super::cause::{Cause, cause};
 use super::term::{Term, linear, positive};
+use super::{Around, SLIPS};
 use crate::balances::balance::Kind;
 
 /// Every fault of a sensor that a diagnosis knows, by a model or by the channel itself.
@@ -90,9 +90,8 @@ pub fn sensors(all: &mut Vec<Cause>, around: &Around) {
         "an accelerometer that is mounted at a tilt",
         "stand level, and turn around on the spot",
     ));
-    // Force times the difference of speeds is taken from the engine; alone it could be any loss in proportion to load.
     let turned = around.channels.iter().any(|name| name == "wheel_speed_m_s");
-    let balances: &'static [Kind] = if turned { &[Kind::Slip, Kind::Fuel] } else { &[Kind::Slip] };
+    let balances: &'static [Kind] = if turned { SLIPS } else { &[Kind::Slip] };
     // Where an implement may pull and nobody knows how much, the motion tells of a part of the force only.
     let slope = positive("coefficient", "1", if around.pulls { 0.15 } else { 0.4 });
     let slips = |terms: Vec<Term>, equation: &'static str, words: &'static str| {

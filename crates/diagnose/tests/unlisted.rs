@@ -309,9 +309,6 @@ fn a_slip_that_grows_with_speed_is_found_between_wheels_and_ground() {
     };
     let recording = recording_of((0.069, &hidden), &headland_stock::registry(), &channels, (29, &noisy));
     let found = found(&recording, &Options::default()).unwrap();
-    let w =
-        crate::found(&recording, &Options { without: vec!["speed_scale".to_owned()], ..Options::default() })
-            .unwrap();
     let [law] = &found.diagnosis.findings[..] else { panic!("{}", found.diagnosis.answer) };
     assert_eq!((law.kind, law.balance), (FindingKind::Unlisted, Kind::Slip), "{}", found.diagnosis.answer);
     assert!(law.equation.starts_with("s = "), "{}", law.equation);
@@ -857,6 +854,17 @@ fn a_drag_by_the_pressure_of_the_tyres_is_found_as_an_equation() {
     let pressure_pa = |t: f64, run: usize| 1.3e5 + 0.5e5 * (t / 9.0 + 1.3 * run as f64).sin();
     let recording = dragged("tyre_pressure_pa", pressure_pa, |v, _, pa| 1500.0 * v * (-pa / 0.5e5).exp());
     is_told_by(&recording, "tyre_pressure_pa");
+}
+
+/// What works at the power take-off shakes the vehicle the more the faster it goes; a slope across it rubs the flanks of its wheels, to
+/// either side alike.
+#[test]
+fn a_drag_by_the_power_of_the_take_off_and_one_by_the_roll_are_found_as_equations() {
+    let wave = |t: f64, run: usize| (t / 9.0 + 1.3 * run as f64).sin();
+    let taken = |t: f64, run: usize| 3e4 + 2e4 * wave(t, run);
+    is_told_by(&dragged("pto_power_w", taken, |v, _, power_w| 0.02 * v * power_w), "pto_power_w");
+    let roll_rad = |t: f64, run: usize| 0.12 * wave(t, run);
+    is_told_by(&dragged("roll_rad", roll_rad, |_, _, roll_rad| 3e4 * roll_rad.sin().abs()), "roll_rad");
 }
 
 /// The same where each run has a pressure of its own: levels that differ for no reason say as much in more numbers.

@@ -87,12 +87,12 @@ impl Plugin for Expression {
         name: "expression",
         about: "a force, a loss of the drive, a slip or a power as a formula of the situation",
         equation: "R, F, λ, s, P = + - * / ^ < <= > >= == != ( ) min max clamp abs sign sqrt pow exp ln log10 sin cos tanh latched lagged of \
-                   v [m/s] acceleration [m/s²] F_drive [N] engine_speed [rad/s] x [m] way [m] t [s] heading [rad] kappa [1/m] slope [1] elevation [m] temperature [°C] oil_temperature [°C] state_of_charge [1] tyre_pressure [Pa] m [kg] \
+                   v [m/s] acceleration [m/s²] F_drive [N] engine_speed [rad/s] x [m] way [m] t [s] heading [rad] kappa [1/m] slope [1] roll [1] elevation [m] temperature [°C] oil_temperature [°C] state_of_charge [1] tyre_pressure [Pa] pto_power [W] hydraulic_power [W] m [kg] \
                    g [m/s²] N [N] rho [kg/m³] area [m²] coasting [1] braking [1] headwind [m/s] crosswind [m/s] and \
                    constants",
         source: "the author of the scenario; empirical",
         validity: "units have to fit (a factor whose unit no name can say is written as quotients: p_w * (F_drive / f_n)^2); comparisons are 1 or 0; latched(u, on, off) is a switch that goes on at one value of u and off at another; lagged(u, τ) follows u with the time constant τ, settled when the run begins; way is the distance \
-                   driven since the run began; slope is the sine, N = m g cos θ the normal load, the cross \
+                   driven since the run began; slope and roll are the sines, the roll's with the right side lower; pto_power and hydraulic_power are what tasks take, or what was recorded; N = m g cos θ the normal load, the cross \
                    wind comes from the right; oil_temperature and tyre_pressure have to be recorded, state_of_charge where the driveline has no battery; of what forces make powers may name all, resistance and force the acceleration (one is sought that the forces make which it makes), loss_share and slip F_drive, the force of the drive before that loss; a force that is not finite stops the simulation, \
                    such a power leaves the drive without any",
         parameters: &[

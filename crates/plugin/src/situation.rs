@@ -57,6 +57,10 @@ pub struct Situation {
     pub state_of_charge: Option<f64>,
     /// Inflation pressure of the tyres above ambient [Pa]; `None` where none was recorded.
     pub tyre_pressure_pa: Option<f64>,
+    /// Power that is taken at the power take-off, by tasks or as it was recorded [W],
+    pub pto_power_w: f64,
+    /// and by the hydraulics.
+    pub hydraulic_power_w: f64,
 }
 
 impl Air {

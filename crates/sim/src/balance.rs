@@ -438,6 +438,8 @@ impl Model {
             oil_temperature_c: given.oil_temperature_c,
             state_of_charge: given.state_of_charge,
             tyre_pressure_pa: given.tyre_pressure_pa,
+            pto_power_w: 0.0,
+            hydraulic_power_w: 0.0,
         }
     }
 
@@ -478,6 +480,7 @@ impl Model {
         // What was recorded there is all that tasks took.
         sums.pto_power_w = given.pto_power_w.unwrap_or(sums.pto_power_w);
         sums.hydraulic_power_w = given.hydraulic_power_w.unwrap_or(sums.hydraulic_power_w);
+        (situation.pto_power_w, situation.hydraulic_power_w) = (sums.pto_power_w, sums.hydraulic_power_w);
         situation.mass_kg += carried_kg;
         self.ask(situation, layout, states, rates, scratch);
         let (mass_kg, area_m2) = scratch

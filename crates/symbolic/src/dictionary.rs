@@ -318,6 +318,7 @@ mod tests {
                 place: Place {
                     elevation_m: 100.0 + (0.2 * k).sin(),
                     sin_slope: 0.05 * (0.21 * k).cos(),
+                    sin_roll: 0.06 * (0.23 * k).cos(),
                     heading_rad: 0.1 * k,
                     curvature_per_m: 0.02 * (0.17 * k).sin(),
                     ..Place::default()
@@ -335,6 +336,8 @@ mod tests {
                 oil_temperature_c: Some(35.0 + 0.2 * k),
                 state_of_charge: Some(0.9 - 0.004 * k),
                 tyre_pressure_pa: Some(1.6e5 - 700.0 * k),
+                pto_power_w: 2e4 + 300.0 * k,
+                hydraulic_power_w: 4e3 + 90.0 * k,
                 ..Situation::default()
             }
         };
@@ -363,6 +366,9 @@ mod tests {
             "temperature" => at.air.temperature_c,
             "oil_temperature" => at.oil_temperature_c.unwrap_or(f64::NAN),
             "state_of_charge" => at.state_of_charge.unwrap_or(f64::NAN),
+            "roll" => at.place.sin_roll,
+            "pto_power" => at.pto_power_w,
+            "hydraulic_power" => at.hydraulic_power_w,
             "tyre_pressure" => at.tyre_pressure_pa.unwrap_or(f64::NAN),
             "m" => at.mass_kg,
             "g" => at.gravity_m_s2,

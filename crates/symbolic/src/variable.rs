@@ -89,7 +89,7 @@ pub(crate) const DRIVE: &str = "F_drive";
 pub(crate) const PRESSURE: &str = "tyre_pressure";
 
 /// Everything that may stand in a law.
-pub(crate) const KNOWN: [Known; 24] = [
+pub(crate) const KNOWN: [Known; 27] = [
     known("v", "m/s", "_m_s", Kind::Size),
     known(ACCELERATION, "m/s²", "_m_s2", Kind::Signed),
     known(ENGINE_SPEED, "rad/s", "_rad_s", Kind::Size),
@@ -100,11 +100,14 @@ pub(crate) const KNOWN: [Known; 24] = [
     known("heading", "rad", "_rad", Kind::Angle),
     known("kappa", "1/m", "_per_m", Kind::Signed),
     known("slope", "1", "", Kind::Signed),
+    known("roll", "1", "", Kind::Signed),
     known("elevation", "m", "_m", Kind::Level),
     Known { name: "temperature", unit: "°C", value_ending: "_c", scale_ending: "_k", kind: Kind::Level },
     Known { name: "oil_temperature", unit: "°C", value_ending: "_c", scale_ending: "_k", kind: Kind::Level },
     known("state_of_charge", "1", "", Kind::Level),
     known(PRESSURE, "Pa", "_pa", Kind::Level),
+    known("pto_power", "W", "_w", Kind::Size),
+    known("hydraulic_power", "W", "_w", Kind::Size),
     known("m", "kg", "_kg", Kind::Weight),
     known("g", "m/s²", "_m_s2", Kind::Weight),
     known("N", "N", "_n", Kind::Weight),

@@ -5,7 +5,7 @@ use crate::balances::balance::Kind;
 use crate::case::range;
 use crate::line::Line;
 use crate::runs::recorded::Recorded;
-use crate::runs::said::inputs;
+use crate::runs::said::{Said, inputs};
 use headland_calibrate::statistics::median;
 use headland_sim::{Drive, Inputs, local_fit, travelled};
 use headland_symbolic::{Enters, Variable};
@@ -69,6 +69,27 @@ fn wind_m_s(case: &Case, part: fn(f64) -> f64) -> Option<Vec<Vec<f64>>> {
     case.runs.iter().map(of_run).collect()
 }
 
+/// Sine of the roll, sample by sample, where the model is driven by it.
+fn rolls(case: &Case) -> Option<Vec<Vec<f64>>> {
+    let of_run = |(run, said): (&Recorded, &Said)| {
+        let roll_rad = run.measured.trace.get("roll_rad")?;
+        let sine =
+            |(roll_rad, sin_slope): (&f64, &f64)| roll_rad.sin() * (1.0 - sin_slope * sin_slope).sqrt();
+        Some(roll_rad.iter().zip(&said.sin_slope).map(sine).collect())
+    };
+    case.runs
+        .iter()
+        .zip(&case.nominal)
+        .map(of_run)
+        .collect::<Option<_>>()
+        .filter(|_| is_told(case, Inputs::Roll))
+}
+
+/// Whether the model is driven by a recorded input in every run.
+fn is_told(case: &Case, input: Inputs) -> bool {
+    case.runs.iter().all(|run| inputs(&run.measured.trace, &run.measured.how).contains(&input))
+}
+
 /// What may stand in a law: of the situation, never made of what is to be explained.
 pub fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     /// Name, unit, samples of every run where they are known.
@@ -103,7 +124,8 @@ pub fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     };
     let whole = |runs: &Vec<Vec<f64>>| runs.iter().flatten().all(|value| value.is_finite());
     let slope = Some(case.nominal.iter().map(|said| said.sin_slope.clone()).collect());
-    let offered: [Offered; 17] = [
+    let taken = |name: &str, input: Inputs| channel(name).filter(|_| is_told(case, input));
+    let offered: [Offered; 20] = [
         ("v", "m/s", of(&|run| run.motion.value.clone())),
         ("acceleration", "m/s²", acceleration),
         ("engine_speed", "rad/s", engine_speed),
@@ -118,6 +140,9 @@ pub fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
         ("tyre_pressure", "Pa", channel("tyre_pressure_pa")),
         ("coasting", "1", channel("coasting")),
         ("slope", "1", slope),
+        ("roll", "1", rolls(case)),
+        ("pto_power", "W", taken("pto_power_w", Inputs::PtoPower)),
+        ("hydraulic_power", "W", taken("hydraulic_power_w", Inputs::HydraulicPower)),
         ("m", "kg", masses_kg(case)),
         ("headwind", "m/s", wind_m_s(case, f64::cos)),
         ("crosswind", "m/s", wind_m_s(case, f64::sin)),
@@ -202,10 +227,9 @@ fn turns(heading_rad: &[Vec<f64>]) -> bool {
 fn tells_more(case: &Case, engine_rad_s: &[Vec<f64>]) -> bool {
     /// Share of its square that may follow the speed of the vehicle.
     const TIED: f64 = 0.95;
-    let told = |run: &Recorded| inputs(&run.measured.trace, &run.measured.how).contains(&Inputs::EngineSpeed);
     let speeds: Vec<f64> = case.runs.iter().flat_map(|run| &run.motion.value).map(|v| v.abs()).collect();
     let engine: Vec<f64> = engine_rad_s.iter().flatten().copied().collect();
-    case.runs.iter().all(told) && Line::through(&speeds, &engine).followed < TIED
+    is_told(case, Inputs::EngineSpeed) && Line::through(&speeds, &engine).followed < TIED
 }
 
 #[cfg(test)]

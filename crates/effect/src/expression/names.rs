@@ -23,7 +23,7 @@ pub(super) const DRIVE: &str = "F_drive";
 const ENGINE: &str = "engine_speed";
 
 /// Every variable; NaN where it is not known. Signs are those of [`Situation`]; the cross wind counts from the right.
-pub(super) const VARIABLES: [Variable; 23] = [
+pub(super) const VARIABLES: [Variable; 26] = [
     variable("v", "m/s", |at| at.speed_m_s),
     variable(ACCELERATION, "m/s²", |at| at.acceleration_m_s2),
     variable(DRIVE, "N", |at| at.tractive_force_n),
@@ -33,11 +33,14 @@ pub(super) const VARIABLES: [Variable; 23] = [
     variable("heading", "rad", |at| at.place.heading_rad),
     variable("kappa", "1/m", |at| at.place.curvature_per_m),
     variable("slope", "1", |at| at.place.sin_slope),
+    variable("roll", "1", |at| at.place.sin_roll),
     variable("elevation", "m", |at| at.place.elevation_m),
     variable("temperature", "°C", |at| at.air.temperature_c),
     variable("oil_temperature", "°C", |at| at.oil_temperature_c.unwrap_or(f64::NAN)),
     variable("state_of_charge", "1", |at| at.state_of_charge.unwrap_or(f64::NAN)),
     variable("tyre_pressure", "Pa", |at| at.tyre_pressure_pa.unwrap_or(f64::NAN)),
+    variable("pto_power", "W", |at| at.pto_power_w),
+    variable("hydraulic_power", "W", |at| at.hydraulic_power_w),
     variable("m", "kg", |at| at.mass_kg),
     variable("g", "m/s²", |at| at.gravity_m_s2),
     variable("N", "N", |at| at.mass_kg * at.gravity_m_s2 * at.place.cos_slope()),

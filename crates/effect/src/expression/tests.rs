@@ -18,6 +18,7 @@ fn situation() -> Situation {
         place: Place {
             elevation_m: 300.0,
             sin_slope: 0.6,
+            sin_roll: 0.07,
             heading_rad: 0.5,
             curvature_per_m: 0.02,
             ..Place::default()
@@ -30,6 +31,8 @@ fn situation() -> Situation {
         oil_temperature_c: Some(70.0),
         state_of_charge: Some(0.6),
         tyre_pressure_pa: Some(1.2e5),
+        pto_power_w: 3e4,
+        hydraulic_power_w: 5e3,
         ..Situation::default()
     }
 }
@@ -50,8 +53,8 @@ fn refused(text: &str) -> String {
 #[test]
 fn every_variable_is_what_its_name_says() {
     let expected = [
-        10.0, 0.7, 450.0, 130.0, 120.0, 50.0, 0.5, 0.02, 0.6, 300.0, -5.0, 70.0, 0.6, 1.2e5, 2000.0, 9.81,
-        15_696.0, 1.2, 3.0, 1.0, 0.0,
+        10.0, 0.7, 450.0, 130.0, 120.0, 50.0, 0.5, 0.02, 0.6, 0.07, 300.0, -5.0, 70.0, 0.6, 1.2e5, 3e4, 5e3,
+        2000.0, 9.81, 15_696.0, 1.2, 3.0, 1.0, 0.0,
     ];
     let expected = expected.into_iter().chain([4.0 * 1f64.cos(), 4.0 * 1f64.sin()]);
     assert_eq!(VARIABLES.len(), expected.clone().count());

@@ -9,7 +9,7 @@ const PLACE: &str = "position_m";
 const WAY: &str = "way";
 
 /// Channels that the variables of a formula are read from.
-pub const CHANNELS: [(&str, &str); 18] = [
+pub const CHANNELS: [(&str, &str); 21] = [
     ("v", "speed_m_s"),
     ("acceleration", "acceleration_m_s2"),
     ("F_drive", "tractive_force_n"),
@@ -25,6 +25,9 @@ pub const CHANNELS: [(&str, &str); 18] = [
     ("tyre_pressure", "tyre_pressure_pa"),
     ("coasting", "coasting"),
     ("slope", "grade"),
+    ("roll", "roll_rad"),
+    ("pto_power", "pto_power_w"),
+    ("hydraulic_power", "hydraulic_power_w"),
     ("m", "payload_kg"),
     ("headwind", "wind_speed_m_s"),
     ("crosswind", "wind_speed_m_s"),

@@ -2,10 +2,11 @@
 //!
 //! A map of the ground is free to be almost anything along a path, and takes the place of what any other cause does on average
 //! there; a clock that runs apart from the others moves the begin of a run little and its end much, and does a part of what a
-//! late speed does; a load that comes and goes in time follows what goes with the acceleration; and another scale of a force or a speed is all that goes with it, before a law that nobody listed can say what
-//! is missing, since sensors come first. A search that begins with one of them may not come back. Where one is claimed and looks
-//! like that, by lying off nought all along, by leaving more than noise or, of a scale, by standing beside physics or leaving much, the runs are
-//! looked at once more without it, and the runs that were held out decide.
+//! late speed does; a load that comes and goes in time follows what goes with the acceleration; another scale of a force or a
+//! speed is all that goes with it, before a law that nobody listed can say what is missing, since sensors come first; and a
+//! listed cause that goes about as a law does hides that law from causes that stand beside it alone. A search that begins with
+//! one of them may not come back. Where one is claimed and looks like that, by lying off nought all along, by standing beside
+//! physics or by leaving more than noise, the runs are looked at once more without it, and the runs that were held out decide.
 
 use crate::choosing::rivals::twin;
 use crate::told::report::{Diagnosed, Diagnosis, FindingKind, FindingReport, Fit, FitRuns, Verdict};
@@ -23,16 +24,18 @@ const SCALES: [&str; 2] = ["force_scale", "speed_scale"];
 const LOAD: &str = "payload_change";
 /// A map with one value.
 const LEVEL: &str = "rolling_resistance";
+/// What nobody listed.
+const LAW: &str = "unlisted";
 /// What is left is this many times the noise, and more.
 const MORE_THAN_NOISE: f64 = 1.5;
-/// A course of a load, or another scale, that leaves so many times the noise is none of it.
+/// A course of a load, another scale, or what a law may say as well, that leaves so many times the noise is none of it.
 const MUCH_MORE: f64 = 4.0;
 /// The error with another set of causes has to be less than this share of what it is with the first.
 const BETTER: f64 = 0.85;
 
 /// What the runs are to be looked at without, one after the other, the doubtful one first: of some findings that leave so many times the
 /// noise.
-fn doubtful(findings: &[FindingReport], lack_of_fit: f64) -> Vec<Vec<&'static str>> {
+fn doubtful(findings: &[FindingReport], lack_of_fit: f64) -> Vec<Vec<String>> {
     let leaves = lack_of_fit > MORE_THAN_NOISE;
     let found = |id: &str| findings.iter().find(|finding| finding.id == id);
     let level = |map: &FindingReport| map.indistinguishable_from.iter().any(|rival| rival.id == LEVEL);
@@ -47,7 +50,19 @@ fn doubtful(findings: &[FindingReport], lack_of_fit: f64) -> Vec<Vec<&'static st
     let both = clock.filter(|_| found(LATE).is_some_and(sought)).map(|clock| vec![clock, LATE]);
     let is_course = |load: &FindingReport| load.parameters.iter().any(|one| one.name.ends_with("_rms"));
     let load = (lack_of_fit > MUCH_MORE && found(LOAD).is_some_and(is_course)).then_some(LOAD);
-    map.into_iter().chain(clock).chain(scales).chain(load).map(|id| vec![id]).chain(both).collect()
+    let known = map.into_iter().chain(clock).chain(scales).chain(load).map(|id| vec![id]);
+    let known: Vec<Vec<&str>> = known.chain(both).collect();
+    // What a law may say as well, and leaves as much, hides the law that says it all.
+    let by_law = |finding: &&FindingReport| {
+        finding.kind == FindingKind::Physics
+            && finding.indistinguishable_from.iter().any(|rival| rival.id == LAW)
+            && !known.contains(&vec![&finding.id])
+    };
+    let hides =
+        findings.iter().filter(|finding| lack_of_fit > MUCH_MORE && by_law(finding) && sought(finding));
+    let hides = hides.map(|finding| vec![finding.id.as_str()]).collect::<Vec<_>>();
+    let owned = |ids: &Vec<&str>| ids.iter().map(|id| (*id).to_owned()).collect();
+    known.iter().chain(&hides).map(owned).collect()
 }
 
 /// A map follows the runs that it was made of; what stands in its place may leave so many times the error in those.
@@ -112,9 +127,9 @@ pub fn opinion(
 ) -> Result<Diagnosed, DiagnoseError> {
     let mut best = first;
     for ids in doubtful(&best.diagnosis.findings, best.diagnosis.fit.lack_of_fit) {
-        let without = options.without.iter().cloned().chain(ids.iter().map(|id| (*id).to_owned())).collect();
+        let without = options.without.iter().chain(&ids).cloned().collect();
         match look(&Options { without, ..options.clone() }) {
-            Ok(other) if wins(ids[0], &other.diagnosis, &best.diagnosis) => best = other,
+            Ok(other) if wins(&ids[0], &other.diagnosis, &best.diagnosis) => best = other,
             // Nothing else may have been asked for.
             Ok(_) | Err(DiagnoseError::NoBalance { .. }) => {}
             Err(error) => return Err(error),
@@ -125,7 +140,7 @@ pub fn opinion(
 
 #[cfg(test)]
 mod tests {
-    use super::{CLOCK, LATE, LEVEL, LOAD, MAP, SCALES, doubtful, is_plainer, is_renamed};
+    use super::{CLOCK, LATE, LAW, LEVEL, LOAD, MAP, SCALES, doubtful, is_plainer, is_renamed};
     use crate::told::report::FindingKind::{Artefact, Physics};
     use crate::told::report::{ParameterReport, finding};
 
@@ -146,6 +161,16 @@ mod tests {
         assert_eq!(doubtful(&[own(LATE), own(CLOCK)], 9.0), [vec![CLOCK], vec![CLOCK, LATE]]);
         assert_eq!(doubtful(&[own(CLOCK)], 9.0), [vec![CLOCK]]);
         assert!(doubtful(&[own(LATE), own(CLOCK)], 1.0).is_empty() && doubtful(&[own(LATE)], 9.0).is_empty());
+    }
+
+    /// Oil that warms up, where a drag that follows the square of the speed late was hidden: a law that leaves as much was its rival.
+    #[test]
+    fn what_a_law_may_say_as_well_and_leaves_much_is_doubted() {
+        let oil = |rival: &str| [finding(Physics, "driveline_temperature", Some(rival))];
+        assert_eq!(doubtful(&oil(LAW), 9.0), [["driveline_temperature"]]);
+        assert!(doubtful(&oil(LAW), 3.0).is_empty() && doubtful(&oil("rolling_temperature"), 9.0).is_empty());
+        // One look without a map is enough.
+        assert_eq!(doubtful(&[finding(Physics, MAP, Some(LAW))], 9.0), [[MAP]]);
     }
 
     /// A load that was put on once is one number.

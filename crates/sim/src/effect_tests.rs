@@ -254,30 +254,21 @@ fn slipping_wheels_turn_faster_and_take_power() {
     assert!(outcome.ledger.relative_residual() < 1e-9, "{:?}", outcome.ledger);
 }
 
-/// Half of the same slip grows with the pull, 200 · (0.00025 + 200 · 1.25·10⁻⁶): each of two effects takes half of the 222.2 W.
+/// Half of the same slip grows with the pull, 200 · (0.00025 + 200 · 1.25·10⁻⁶), or is there whatever it is, 200 · 0.00025 + 0.05: each
+/// of two effects takes half of the 222.2 W.
 #[test]
-fn slip_that_grows_with_the_pull_shares_its_power_with_slip_that_does_not() {
-    let straight = does(Action { slip_per_n: 2.5e-4, ..Action::default() });
-    let bent = does(Action { slip_per_n2: 1.25e-6, ..Action::default() });
-    let outcome = hold(&model(vec![straight, bent]));
-    assert!((last(&outcome, "wheel_speed_m_s") - 10.0 / 0.9).abs() < 1e-9);
-    for effect in ["effect_0_w", "effect_1_w"] {
-        assert!((last(&outcome, effect) - 1000.0 / 9.0).abs() < 1e-6, "{effect}");
+fn slips_of_several_kinds_share_their_power() {
+    let bent = Action { slip_per_n2: 1.25e-6, ..Action::default() };
+    let even = Action { slip: 0.05, ..Action::default() };
+    for other in [bent, even] {
+        let straight = does(Action { slip_per_n: 2.5e-4, ..Action::default() });
+        let outcome = hold(&model(vec![straight, does(other)]));
+        assert!((last(&outcome, "wheel_speed_m_s") - 10.0 / 0.9).abs() < 1e-9);
+        for effect in ["effect_0_w", "effect_1_w"] {
+            assert!((last(&outcome, effect) - 1000.0 / 9.0).abs() < 1e-6, "{effect}");
+        }
+        assert!(outcome.ledger.relative_residual() < 1e-9, "{:?}", outcome.ledger);
     }
-    assert!(outcome.ledger.relative_residual() < 1e-9, "{:?}", outcome.ledger);
-}
-
-/// Half of the same slip is there whatever the pull: each of two effects takes half of the 222.2 W.
-#[test]
-fn slip_whatever_the_pull_shares_its_power_with_slip_that_grows_with_it() {
-    let even = does(Action { slip: 0.05, ..Action::default() });
-    let grows = does(Action { slip_per_n: 2.5e-4, ..Action::default() });
-    let outcome = hold(&model(vec![even, grows]));
-    assert!((last(&outcome, "wheel_speed_m_s") - 10.0 / 0.9).abs() < 1e-9);
-    for effect in ["effect_0_w", "effect_1_w"] {
-        assert!((last(&outcome, effect) - 1000.0 / 9.0).abs() < 1e-6, "{effect}");
-    }
-    assert!(outcome.ledger.relative_residual() < 1e-9, "{:?}", outcome.ledger);
 }
 
 /// Slips by a part for each newton of the drive, as it learns of that.

@@ -3,7 +3,7 @@
 use crate::balances::balance::Kind;
 use crate::balances::noise::Whiteners;
 use crate::balances::rows::Row;
-use crate::causes::catalogue::Cause;
+use crate::causes::catalogue::{Cause, is_lost_share};
 use crate::causes::trial::{Pool, Shown, effect, lost_drive_n, per_newton, per_slip};
 use crate::choosing::state::{Part, Stand, State};
 use crate::law::nameable::{agreed_m_s2, moved_m_s2, variables, way_is_place};
@@ -78,11 +78,6 @@ impl Sought {
             accelerations_m_s2,
             shows,
         }))
-    }
-
-    /// Whether a share of the drive's force is sought that is lost on its way; a slip is a share of the speed.
-    fn loses(&self) -> bool {
-        self.target == Target::Share && self.kind != Kind::Slip
     }
 
     /// The same by a formula that names neither times nor places.
@@ -204,7 +199,7 @@ impl Sought {
 
     /// The size of the drive's force and what a law says is lost of it, sample by sample [N]; none where no share is sought.
     fn forces_and_losses_n<'a>(&'a self, law: &'a Law) -> impl Iterator<Item = (f64, f64)> + 'a {
-        let runs = law.prediction.iter().zip(&self.drive_n).filter(|_| self.loses());
+        let runs = law.prediction.iter().zip(&self.drive_n).filter(|_| is_lost_share(self.target, self.kind));
         let pairs = runs.flat_map(|(shares, drive_n)| shares.iter().zip(drive_n));
         pairs.map(|(share, drive_n)| (drive_n.abs(), share * drive_n.abs()))
     }
@@ -217,7 +212,7 @@ impl Sought {
         if !self.somewhen {
             all.retain(|variable| !["t", "x"].contains(&variable.name.as_str()));
         }
-        if self.loses() {
+        if is_lost_share(self.target, self.kind) {
             all.retain(|variable| OF_A_DRIVE.contains(&variable.name.as_str()));
         }
         // What an engine gives beside its wheels goes with the size of their force, whichever way that acts: its sign is that of a power

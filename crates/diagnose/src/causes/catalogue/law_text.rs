@@ -37,6 +37,11 @@ pub const CHANNELS: [(&str, &str); 21] = [
 const RESISTANCE: &str = "resistance";
 const SLIP: &str = "slip";
 
+/// Whether a law is a share of the drive's force that is lost on its way; a slip is a share of the speed.
+pub fn is_lost_share(target: Target, kind: Kind) -> bool {
+    target == Target::Share && kind != Kind::Slip
+}
+
 /// An equation that was found, as scenarios write it.
 #[derive(Clone, Debug)]
 pub struct LawText {
@@ -81,7 +86,7 @@ impl LawText {
     pub fn new(law: &headland_symbolic::Law, target: Target, kind: Kind) -> Self {
         /// Every piece of it was one of about a dozen: ln of that.
         const PER_PIECE: f64 = 2.5;
-        let lost = target == Target::Share && kind != Kind::Slip;
+        let lost = is_lost_share(target, kind);
         let named = |(name, _): &(&'static str, &'static str)| law.names(name) || lost && *name == "F_drive";
         let mut depends_on: Vec<_> = CHANNELS.into_iter().filter(named).map(|(_, channel)| channel).collect();
         depends_on.dedup();

@@ -1,6 +1,6 @@
 //! The schema of a description, as it stands in RON.
 
-use headland_units::{parse_quantity, unit_of_name};
+use headland_units::{parse_difference, parse_quantity, unit_of_name};
 use serde::{Deserialize, Deserializer, de};
 use std::fmt;
 
@@ -201,24 +201,14 @@ impl Amount {
         match self {
             Self::Number(value) => Ok(*value),
             Self::Text(text) => {
-                let mut unit = unit_of_name(name).ok_or_else(|| {
+                let unit = unit_of_name(name).ok_or_else(|| {
                     format!("`{name}` ends in no unit, expected a number instead of `{text}`")
                 })?;
-                let value = parse_quantity(text, &unit).map_err(|error| error.to_string())?;
-                // A spread is a difference: the zero of its scale cancels.
-                let zero = parse_quantity(&zero_of(text), &unit).unwrap_or(0.0);
-                unit.offset = 0.0;
-                Ok(if spread { value - zero } else { value })
+                let read = if spread { parse_difference } else { parse_quantity };
+                read(text, &unit).map_err(|error| error.to_string())
             }
         }
     }
-}
-
-/// The same unit behind a zero: `"2 °F"` gives `"0 °F"`.
-fn zero_of(text: &str) -> String {
-    let unit =
-        text.trim().trim_start_matches(|c: char| c.is_ascii_digit() || matches!(c, '.' | '+' | '-' | '_'));
-    format!("0 {unit}")
 }
 
 impl<'de> Deserialize<'de> for Amount {

@@ -5,8 +5,8 @@
 
 use crate::error::{Location, ScenarioError};
 use crate::scenario::AskedInputs;
-use crate::tree::{Node, Shape, parse};
-use headland_units::{Unit, parse_quantity, unit_of_name};
+use crate::tree::{Field, Node, Shape, parse};
+use headland_units::{QuantityError, Unit, parse_difference, parse_quantity, unit_of_name};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -376,8 +376,23 @@ fn collect(
 ) -> Result<(), ScenarioError> {
     match &node.shape {
         Shape::Struct { fields, .. } => {
+            let named = named_unit(fields);
             for field in fields {
-                collect(&field.value, unit_of_name(&field.key).as_ref(), source, found)?;
+                let of_name = unit_of_name(&field.key);
+                let own = match field.key.as_str() {
+                    "value" | "bounds" => named.clone(),
+                    // A spread is a difference: the zero of a scale cancels.
+                    "sd" => {
+                        if let (Some(unit), Shape::Text(text)) = (&named, &field.value.shape) {
+                            let value = parse_difference(text, unit)
+                                .map_err(|error| refused(error, &field.value, source))?;
+                            found.push((field.value.span.clone(), Replacement::Number(value)));
+                        }
+                        continue;
+                    }
+                    _ => None,
+                };
+                collect(&field.value, own.or(of_name).as_ref(), source, found)?;
             }
         }
         Shape::Tuple { name, values } => {
@@ -416,16 +431,29 @@ fn collect(
         }
         Shape::Text(text) => {
             if let Some(unit) = unit {
-                let value = parse_quantity(text, unit).map_err(|error| ScenarioError::Quantity {
-                    error,
-                    at: Location::of(&source.path, &source.text, node.span.start, node.span.len()),
-                })?;
+                let value = parse_quantity(text, unit).map_err(|error| refused(error, node, source))?;
                 found.push((node.span.clone(), Replacement::Number(value)));
             }
         }
         Shape::Word => {}
     }
     Ok(())
+}
+
+/// The unit of the number that a free parameter names: `value`, `sd` and `bounds` beside the name are of it.
+fn named_unit(fields: &[Field]) -> Option<Unit> {
+    let name = fields.iter().find(|field| field.key == "name")?;
+    match &name.value.shape {
+        Shape::Text(path) => unit_of_name(path),
+        _ => None,
+    }
+}
+
+fn refused(error: QuantityError, node: &Node, source: &Source) -> ScenarioError {
+    ScenarioError::Quantity {
+        error,
+        at: Location::of(&source.path, &source.text, node.span.start, node.span.len()),
+    }
 }
 
 /// Old machines end a line with CR alone. Lines are counted by line feeds, so those become some; no byte moves.
@@ -457,6 +485,25 @@ mod tests {
             document.text().contains("about: \"36 km/h\"")
                 && document.text().contains("\"a.mass_kg\": 2000.0")
         );
+    }
+
+    #[test]
+    fn a_free_parameter_takes_the_unit_of_what_it_names() {
+        let document = of(
+            "(free: [(name: \"vehicle.mass_kg\", value: \"13 t\", sd: \"65 kg\", bounds: (\"12 t\", 14000)), \
+              (name: \"air.temperature_c\", sd: \"9 °F\")])",
+        );
+        for (path, expected) in [
+            ("free.0.value", 13_000.0),
+            ("free.0.sd", 65.0),
+            ("free.0.bounds.0", 12_000.0),
+            ("free.1.sd", 5.0),
+        ] {
+            assert!((document.number(path).unwrap() - expected).abs() < 1e-9, "{path}");
+        }
+        let broken = "(free: [(name: \"vehicle.mass_kg\", sd: \"7 m\")])";
+        let error = Document::of_text("test.ron", broken, Path::new("")).unwrap_err();
+        assert_eq!(error.location().unwrap().column, 39);
     }
 
     #[test]

@@ -10,6 +10,6 @@ mod suffix;
 mod unit;
 
 pub use dimension::Dimension;
-pub use quantity::{QuantityError, convert, parse_quantity};
+pub use quantity::{QuantityError, convert, parse_difference, parse_quantity};
 pub use suffix::{stem, unit_of_name};
 pub use unit::{Unit, UnitError, parse_unit};

@@ -37,6 +37,22 @@ pub enum QuantityError {
 /// # Errors
 /// [`QuantityError`] where it is no number with a unit of the same dimension.
 pub fn parse_quantity(text: &str, wanted: &Unit) -> Result<f64, QuantityError> {
+    let (value, unit) = split(text, wanted)?;
+    convert(value, &unit, wanted)
+}
+
+/// Reads `"2 °F"` as a difference in `wanted` units, as a standard deviation is one: zeros of scales cancel.
+///
+/// # Errors
+/// [`QuantityError`] where it is no number with a unit of the same dimension.
+pub fn parse_difference(text: &str, wanted: &Unit) -> Result<f64, QuantityError> {
+    let (value, unit) = split(text, wanted)?;
+    let scale = |unit: &Unit| Unit { offset: 0.0, ..unit.clone() };
+    convert(value, &scale(&unit), &scale(wanted))
+}
+
+/// The number and its unit; `wanted` is what the error asks for.
+fn split(text: &str, wanted: &Unit) -> Result<(f64, Unit), QuantityError> {
     let trimmed = text.trim();
     let number_end = trimmed
         .char_indices()
@@ -55,7 +71,7 @@ pub fn parse_quantity(text: &str, wanted: &Unit) -> Result<f64, QuantityError> {
     if unit.is_empty() {
         return Err(QuantityError::NoUnit { text: text.to_owned(), expected: wanted.symbol.clone() });
     }
-    convert(value, &parse_unit(unit)?, wanted)
+    Ok((value, parse_unit(unit)?))
 }
 
 /// Converts a value between two units of one dimension.
@@ -86,6 +102,8 @@ mod tests {
         assert!((read("1.5e2kPa", "tyre_pressure_pa").unwrap() - 150_000.0).abs() < 1e-9);
         assert!((read("-90 deg", "from_rad").unwrap() + std::f64::consts::FRAC_PI_2).abs() < 1e-12);
         assert!((read("50 °F", "air_temperature_c").unwrap() - 10.0).abs() < 1e-12);
+        let difference = parse_difference("9 °F", &unit_of_name("air_temperature_c").unwrap()).unwrap();
+        assert!((difference - 5.0).abs() < 1e-12);
     }
 
     #[test]

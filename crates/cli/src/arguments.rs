@@ -257,7 +257,8 @@ pub struct TerrainOptions {
 /// Options of `headland demo`.
 #[derive(Args, Debug)]
 pub struct DemoOptions {
-    /// `coastdown`: simulate ten coast-downs, add sensor noise, analyse, compare, report; `batch`: compare three drivelines
+    /// `coastdown`: simulate ten coast-downs, add sensor noise, analyse, compare, report; `batch`: compare three drivelines;
+    /// `diagnosis`: find the wind that a scenario of ten coast-downs does not know
     #[arg(value_name = "NAME", default_value = "coastdown")]
     pub name: String,
     /// List the examples

@@ -7,11 +7,34 @@ use std::path::PathBuf;
 /// Files of a scenario, each with its path below the folder of scenarios; the first is the scenario.
 pub type Files = [(&'static str, &'static str)];
 
+const XERION: (&str, &str) =
+    ("vehicles/xerion_3800.ron", include_str!("../../../scenarios/vehicles/xerion_3800.ron"));
+const MOIST_SAND: (&str, &str) =
+    ("grounds/moist_sand.ron", include_str!("../../../scenarios/grounds/moist_sand.ron"));
+const TEN_COAST_DOWNS: (&str, &str) =
+    ("runs/ten_coast_downs.ron", include_str!("../../../scenarios/runs/ten_coast_downs.ron"));
+
 /// Ten coast-downs of the Xerion 3800.
-pub const COAST_DOWN_STUDY: [(&str, &str); 3] = [
+pub const COAST_DOWN_STUDY: [(&str, &str); 4] = [
     ("coast_down_study.ron", include_str!("../../../scenarios/coast_down_study.ron")),
-    ("vehicles/xerion_3800.ron", include_str!("../../../scenarios/vehicles/xerion_3800.ron")),
-    ("grounds/moist_sand.ron", include_str!("../../../scenarios/grounds/moist_sand.ron")),
+    XERION,
+    MOIST_SAND,
+    TEN_COAST_DOWNS,
+];
+
+/// The same in a wind that blows along the lane as well.
+pub const COAST_DOWN_IN_WIND: [(&str, &str); 4] = [
+    ("coast_down_in_wind.ron", include_str!("../../../scenarios/coast_down_in_wind.ron")),
+    XERION,
+    MOIST_SAND,
+    TEN_COAST_DOWNS,
+];
+
+/// The same by someone who knows nothing of the wind.
+pub const COAST_DOWN_CALM: [(&str, &str); 3] = [
+    ("coast_down_calm.ron", include_str!("../../../scenarios/coast_down_calm.ron")),
+    XERION,
+    TEN_COAST_DOWNS,
 ];
 
 /// Three drivelines of the Xerion 3800 at work.

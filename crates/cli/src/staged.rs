@@ -26,7 +26,15 @@ pub fn write(
 ) -> Result<PathBuf, Failure> {
     output.folder(FOLDER.as_ref())?;
     let number = |path: &str| scenario.document().number(path).unwrap_or(0.0);
-    let wind = (number("air.wind.speed_m_s"), number("air.wind.from_rad").to_degrees());
+    // Where the scenario knows of no wind, nobody measured one.
+    let wind = scenario
+        .document()
+        .number("air.wind.speed_m_s")
+        .map(|speed_m_s| (speed_m_s, number("air.wind.from_rad").to_degrees()));
+    let measured = wind.map_or("", |_| {
+        "        (column: \"wind [m/s]\", is: \"wind_speed_m_s\"),\n        \
+         (column: \"wind from [deg]\", is: \"wind_direction_rad\"),\n"
+    });
     let mut described = String::new();
     for (index, (id, outcome)) in runs.iter().enumerate() {
         let mut draws = Draws::new(seed, index as u64);
@@ -46,9 +54,7 @@ pub fn write(
         "// Made from a simulation; seed {seed}.\n(\n    about: \"{}: logged with noise\",\n    runs: [\n{described}    ],\n    \
          format: csv(delimiter: \";\"),\n    channels: [\n        \
          (column: \"speed [km/h]\", is: \"speed_m_s\", sensor: (noise: {:?})),\n        \
-         (column: \"heading [deg]\", is: \"heading_rad\"),\n        \
-         (column: \"wind [m/s]\", is: \"wind_speed_m_s\"),\n        \
-         (column: \"wind from [deg]\", is: \"wind_direction_rad\"),\n    ],\n    known: [\n{}        \
+         (column: \"heading [deg]\", is: \"heading_rad\"),\n{measured}    ],\n    known: [\n{}        \
          (name: \"air_density_kg_m3\", value: {:?}),\n    ],\n)\n",
         scenario.about,
         NOISE_M_S,
@@ -66,8 +72,11 @@ fn coasting(trace: &Trace) -> (f64, f64) {
     (time(first), trace.time_s().last().copied().unwrap_or(0.0))
 }
 
-fn log(trace: &Trace, (wind_m_s, wind_deg): (f64, f64), draws: &mut Draws) -> String {
-    let mut text = String::from("time [s];speed [km/h];heading [deg];wind [m/s];wind from [deg];coasting\n");
+/// One run; `wind` is its speed [m/s] and where it blows from [°].
+fn log(trace: &Trace, wind: Option<(f64, f64)>, draws: &mut Draws) -> String {
+    let columns = wind.map_or("", |_| "wind [m/s];wind from [deg];");
+    let mut text = format!("time [s];speed [km/h];heading [deg];{columns}coasting\n");
+    let blows = wind.map_or(String::new(), |(speed_m_s, from_deg)| format!("{speed_m_s:.1};{from_deg:.0};"));
     let (first, last) = (trace.time_s().first().copied().unwrap_or(0.0), trace.duration_s());
     let at = |name: &str, time_s: f64| trace.at(name, time_s).unwrap_or(f64::NAN);
     let mut sample = 0_u32;
@@ -80,10 +89,7 @@ fn log(trace: &Trace, (wind_m_s, wind_deg): (f64, f64), draws: &mut Draws) -> St
         let speed_km_h = (3.6 * (at("speed_m_s", time_s) + NOISE_M_S * draws.normal())).abs();
         let heading_deg = at("heading_rad", time_s).to_degrees();
         let coasting = u8::from(at("coasting", time_s) >= 0.5);
-        let _ = writeln!(
-            text,
-            "{time_s:.1};{speed_km_h:.2};{heading_deg:.1};{wind_m_s:.1};{wind_deg:.0};{coasting}"
-        );
+        let _ = writeln!(text, "{time_s:.1};{speed_km_h:.2};{heading_deg:.1};{blows}{coasting}");
         sample += 1;
     }
 }

@@ -7,8 +7,9 @@ use crate::output::Output;
 use crate::page;
 use crate::picture::{Wanted, draw_diagnosis};
 use crate::say::Say;
-use headland_diagnose::{DiagnoseError, Diagnosed, Options, Progress, diagnose as find};
+use headland_diagnose::{DiagnoseError, Diagnosed, Options, Progress};
 use headland_plugin::Registry;
+use headland_recording::Recording;
 use headland_scenario::Scenario;
 use std::fmt::Write;
 use std::path::Path;
@@ -43,16 +44,38 @@ pub fn diagnose(registry: &Registry, options: &DiagnoseOptions, seed: u64, say: 
     let recording = held::read_recording(&options.held.recording, say)?;
     let mut output = Output::new(options.held.out.as_deref(), &options.held.scenario)?;
     let wanted = Options { without: options.without.clone(), only: options.only.clone(), seed };
-    let found = find(&scenario, &recording, registry, &wanted, &Steps(say))?;
-    output.json("diagnosis.json", &found.diagnosis)?;
-    output.traces("effects.parquet", &found.effects)?;
-    scenarios(&mut output, registry, &scenario, &found)?;
-    recording_text(&mut output, &options.held.recording, &found)?;
-    let page = page::diagnose::page(&scenario.about, &recording, &found);
-    output.page("report.html", &page)?;
+    let found = find(registry, (&scenario, &recording), &wanted, say)?;
+    write(&mut output, registry, &scenario, (&recording, &options.held.recording), &found)?;
     let picture = draw_diagnosis(drawn, &scenario.about, &recording, &found, &mut output)?;
     say.result(&told(&found, &output), &found.diagnosis)?;
     picture.serve(say)
+}
+
+/// The diagnosis of a recording, its steps told.
+pub fn find(
+    registry: &Registry,
+    (scenario, recording): (&Scenario, &Recording),
+    wanted: &Options,
+    say: Say,
+) -> Result<Diagnosed, Failure> {
+    Ok(headland_diagnose::diagnose(scenario, recording, registry, wanted, &Steps(say))?)
+}
+
+/// Writes what was found, as files that other commands take and a page; beside the recording stands the file of its
+/// description.
+pub fn write(
+    output: &mut Output,
+    registry: &Registry,
+    scenario: &Scenario,
+    (recording, described): (&Recording, &Path),
+    found: &Diagnosed,
+) -> Result<(), Failure> {
+    output.json("diagnosis.json", &found.diagnosis)?;
+    output.traces("effects.parquet", &found.effects)?;
+    scenarios(output, registry, scenario, found)?;
+    recording_text(output, described, found)?;
+    output.page("report.html", &page::diagnose::page(&scenario.about, recording, found))?;
+    Ok(())
 }
 
 /// The improved scenario; files that its plugins name are found from where the first one lay.
@@ -79,7 +102,8 @@ fn recording_text(output: &mut Output, path: &Path, found: &Diagnosed) -> Result
     output.text("recording.ron", &text).map(drop)
 }
 
-fn told(found: &Diagnosed, output: &Output) -> String {
+/// What is said at the end.
+pub fn told(found: &Diagnosed, output: &Output) -> String {
     let diagnosis = &found.diagnosis;
     let mut text = format!("{}\n", diagnosis.answer);
     for finding in &diagnosis.findings {

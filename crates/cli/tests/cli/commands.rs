@@ -211,6 +211,42 @@ fn the_demonstration_leaves_everything_behind_and_finds_its_truth() {
 }
 
 #[test]
+fn the_demonstration_of_a_diagnosis_finds_the_wind_that_was_driven_in() {
+    let out = tempfile::tempdir().unwrap();
+    let told = done(&["demo", "diagnosis", "--quiet", "--out", word(out.path())]);
+    assert!(told.contains("A wind of which these runs show only the part along their lanes"), "{told}");
+    exists(out.path(), &["report.html", "effects.parquet", "recording.ron", "recording/run_10.csv"]);
+    let log = std::fs::read_to_string(out.path().join("recording/run_01.csv")).unwrap();
+    assert!(!log.contains("wind"), "nobody measured it: {}", log.lines().next().unwrap());
+    let document = json(&out.path().join("diagnosis.json"));
+    assert_eq!(document["verdict"], "missing_physics");
+    assert_eq!(document["findings"].as_array().unwrap().len(), 1);
+    let number = |name: &str, field: &str| {
+        let parameters = document["findings"][0]["parameters"].as_array().unwrap();
+        parameters.iter().find(|one| one["name"] == name).unwrap()[field].clone()
+    };
+    let ends = number("speed_m_s", "ci95");
+    assert!(ends[0].as_f64().unwrap() < 8.5 && 8.5 < ends[1].as_f64().unwrap(), "{ends}");
+    // Its part along the lane, of 8.5 m/s at 35°.
+    let along_m_s =
+        number("speed_m_s", "value").as_f64().unwrap() * number("from_rad", "value").as_f64().unwrap().cos();
+    assert!((along_m_s - 8.5 * 35f64.to_radians().cos()).abs() < 1.5, "{along_m_s}");
+    // What was found runs with the ordinary commands.
+    let improved = out.path().join("scenario.ron");
+    let again = out.path().join("again");
+    done(&[
+        "compare",
+        word(&improved),
+        "--recording",
+        word(&out.path().join("recording.ron")),
+        "--require",
+        "speed_m_s rmse < 0.07 m/s",
+        "--out",
+        word(&again),
+    ]);
+}
+
+#[test]
 fn threads_change_nothing_and_a_seed_does() {
     let make = |threads: &str, seed: &str| {
         let out = tempfile::tempdir().unwrap();

@@ -1,7 +1,6 @@
-//! `headland demo`: built-in examples that need no file.
+//! Ten coast-downs: simulated, logged with noise, analysed from the logs, compared.
 
 use crate::arguments::DemoOptions;
-use crate::command::batch;
 use crate::command::coastdown::{self, Analysis};
 use crate::command::compare::{self, Comparison};
 use crate::command::run::simulate_all;
@@ -14,27 +13,15 @@ use crate::say::Say;
 use crate::staged;
 use crate::study_input::StudyInput;
 use headland_calibrate::coastdown::{Settings, SpeedUnit};
-use headland_plugin::{Registry, closest};
+use headland_plugin::Registry;
 use headland_recording::Recording;
 use headland_report::{Item, Report, Section};
 use headland_scenario::Scenario;
 use serde::Serialize;
 use std::fmt::Write;
 
-/// Name and one line of each example.
-const EXAMPLES: [(&str, &str); 2] = [
-    ("coastdown", "simulate ten coast-downs, add sensor noise, analyse, compare, report"),
-    ("batch", "three drivelines at the plough, on the road and through a mixed day, compared"),
-];
-
 /// Where the truth lies in the scenario.
 const TRUTH: &str = "ground.soil.coefficient";
-
-#[derive(Debug, Serialize)]
-struct Example {
-    name: &'static str,
-    about: &'static str,
-}
 
 #[derive(Debug, Serialize)]
 struct Told<'a> {
@@ -43,44 +30,8 @@ struct Told<'a> {
     comparison: &'a Comparison,
 }
 
-/// Runs the command.
-pub fn demo(registry: &Registry, options: &DemoOptions, seed: u64, say: Say) -> Result<(), Failure> {
-    if options.list {
-        let examples = EXAMPLES.map(|(name, about)| Example { name, about });
-        let text = EXAMPLES.map(|(name, about)| format!("{name:<12} {about}")).join("\n");
-        return say.result(&text, &examples);
-    }
-    let names = EXAMPLES.map(|(name, _)| name);
-    if !names.contains(&options.name.as_str()) {
-        let hint =
-            closest(&options.name, &names).map_or(String::new(), |name| format!("; did you mean `{name}`?"));
-        return Err(Failure::Input(format!(
-            "no example is named `{}`{hint} known: {}",
-            options.name,
-            names.join(", ")
-        )));
-    }
-    match options.name.as_str() {
-        "batch" => three_drivelines(registry, options, seed, say),
-        _ => coast_down(registry, options, seed, say),
-    }
-}
-
-fn three_drivelines(registry: &Registry, options: &DemoOptions, seed: u64, say: Say) -> Result<(), Failure> {
-    let mut output = Output::new(Some(&options.out), &options.out)?;
-    let path = embedded::write(&embedded::THREE_DRIVELINES, &mut output)?;
-    let done = batch::run(
-        registry,
-        headland_batch::Comparison::read(&path)?,
-        (false, false),
-        &mut output,
-        seed,
-        say,
-    )?;
-    batch::finish(&done, &output, say)
-}
-
-fn coast_down(registry: &Registry, options: &DemoOptions, seed: u64, say: Say) -> Result<(), Failure> {
+/// Simulates the study, logs it and analyses the logs.
+pub fn coast_down(registry: &Registry, options: &DemoOptions, seed: u64, say: Say) -> Result<(), Failure> {
     let mut output = Output::new(Some(&options.out), &options.out)?;
     let path = embedded::write(&embedded::COAST_DOWN_STUDY, &mut output)?;
     let scenario = Scenario::read(&path, registry)?;

@@ -101,7 +101,7 @@ fn drive_each(study: &Study, values: &[f64], what: &str, say: Say) -> Vec<Result
 }
 
 fn pair(run: &Measured, outcome: Outcome) -> Result<Pair, Failure> {
-    let measured = masked(run)?;
+    let measured = masked(run, &outcome.trace)?;
     let mut comparison = compare_traces(&run.id, &measured, &outcome.trace)?;
     // A total counts every sample, braked or not: energy does not care who stopped the vehicle.
     comparison.totals = compare_traces(&run.id, &run.trace, &outcome.trace)?.totals;
@@ -119,12 +119,16 @@ fn pair(run: &Measured, outcome: Outcome) -> Result<Pair, Failure> {
     })
 }
 
-/// The measured channels without the samples that are not compared.
-fn masked(run: &Measured) -> Result<Trace, Failure> {
+/// The measured channels without the samples that are not compared: of all that the model answers with, and not of where it was.
+fn masked(run: &Measured, modelled: &Trace) -> Result<Trace, Failure> {
+    let answered = |name: &str| {
+        let of_model = modelled.channels().iter().find(|channel| channel.name == name);
+        name != "position_m" && of_model.is_some_and(|channel| channel.origin == Origin::Predicted)
+    };
     let mut masked = Trace::new(run.trace.time_s().to_vec())?;
     for channel in run.trace.channels() {
         let mut values = channel.values.clone();
-        if run.signals.contains(&channel.name) {
+        if run.signals.contains(&channel.name) || answered(&channel.name) {
             for (value, compared) in values.iter_mut().zip(&run.compared) {
                 if !compared {
                     *value = f64::NAN;
@@ -181,4 +185,52 @@ pub fn told_notices(notices: &[Notice]) -> Vec<ToldNotice> {
         first_s: notice.first_s,
     };
     notices.iter().map(told).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use headland_sim::{Drive, Replay};
+
+    /// Current and voltage are answers as much as the power that is made of them; what was told, and the place, stay whole.
+    #[test]
+    fn samples_that_are_not_compared_are_left_out_of_every_answer() {
+        let trace = |voltage: Origin| {
+            let mut trace = Trace::new(vec![0.0, 1.0, 2.0]).unwrap();
+            for (name, origin) in [
+                ("speed_m_s", Origin::Predicted),
+                ("battery_voltage_v", voltage),
+                ("position_m", Origin::Predicted),
+                ("grade", Origin::Driven),
+            ] {
+                trace.push(name, vec![1.0, 2.0, 3.0], origin).unwrap();
+            }
+            trace
+        };
+        let run = Measured {
+            id: "r1".to_owned(),
+            trace: trace(Origin::Measured),
+            how: Replay {
+                drive: Drive::Torque,
+                also: Vec::new(),
+                window_s: None,
+                smoothing_s: 1.0,
+                step_s: 1.0,
+                reversed_from_m: None,
+                passes_before: 0,
+                follows_brakes: true,
+            },
+            signals: vec!["speed_m_s".to_owned()],
+            held_out: false,
+            known: Vec::new(),
+            compared: vec![true, false, true],
+        };
+        let left = |name: &str, voltage: Origin| {
+            let masked = masked(&run, &trace(voltage)).unwrap();
+            masked.get(name).unwrap()[1].is_nan()
+        };
+        assert!(left("speed_m_s", Origin::Predicted) && left("battery_voltage_v", Origin::Predicted));
+        assert!(!left("battery_voltage_v", Origin::Driven));
+        assert!(!left("position_m", Origin::Predicted) && !left("grade", Origin::Predicted));
+    }
 }

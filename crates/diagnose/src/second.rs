@@ -101,7 +101,13 @@ fn wins(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
     let held_out = |one: &Diagnosis| Some((one.findings.len(), left(one.fit.held_out.as_ref()?)));
     let plainer = held_out(other).zip(held_out(first)).is_some_and(|(other, first)| is_plainer(other, first));
     let better = is_better(id, other, first) || of_sensors && plainer;
-    better && !patches && !is_renamed(id, &other.findings, &first.findings)
+    let open = leaves_more(other.fit.lack_of_fit, first.fit.lack_of_fit);
+    better && !patches && !open && !is_renamed(id, &other.findings, &first.findings)
+}
+
+/// Whether more than noise is left where nothing was: one signal may be told better while the balance of another is left open.
+fn leaves_more(other: f64, first: f64) -> bool {
+    first <= MORE_THAN_NOISE && other > MORE_THAN_NOISE
 }
 
 /// Whether fewer causes, but not none, tell the runs held out no worse: a sensor at fault is then one cause too many. Each by their number
@@ -140,7 +146,7 @@ pub fn opinion(
 
 #[cfg(test)]
 mod tests {
-    use super::{CLOCK, LATE, LAW, LEVEL, LOAD, MAP, SCALES, doubtful, is_plainer, is_renamed};
+    use super::{CLOCK, LATE, LAW, LEVEL, LOAD, MAP, SCALES, doubtful, is_plainer, is_renamed, leaves_more};
     use crate::told::report::FindingKind::{Artefact, Physics};
     use crate::told::report::{ParameterReport, finding};
 
@@ -152,6 +158,13 @@ mod tests {
         // What was driven both ways tells the two apart, and a level is no map.
         assert!(!is_renamed(MAP, &slopes, &[finding(Physics, MAP, None)]));
         assert!(!is_renamed(MAP, &[finding(Physics, LEVEL, None)], &first));
+    }
+
+    /// The power of a battery told 1.4 times better, and in the place of soft ground a load that leaves 2.5 times the noise of the motion.
+    #[test]
+    fn what_leaves_a_balance_open_that_was_closed_is_no_better() {
+        assert!(leaves_more(2.5, 1.1));
+        assert!(!leaves_more(2.5, 3.0) && !leaves_more(1.2, 1.1) && !leaves_more(1.1, 2.5));
     }
 
     /// One that drifts is looked at without the clock, and beside a late speed without both.

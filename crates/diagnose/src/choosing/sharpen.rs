@@ -36,27 +36,27 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
     let Some(greatest) = round.causes.first().map(|one| one.2).filter(|gain| *gain > 0.0) else {
         return Ok(false);
     };
+    let shaped = |cause: usize| {
+        let cause = &case.causes[cause];
+        let free = cause.terms.iter().any(|term| !term.linear && !term.is_held());
+        free && (cause.form == Form::Parameters || cause.by_run) && !cause.blows_by_run()
+    };
     let mut chosen: Vec<(usize, Vec<f64>)> = Vec::new();
     let mut consider = |cause: usize, shape: &[f64]| {
-        let free = case.causes[cause].terms.iter().any(|term| !term.linear && !term.is_held());
-        let known = chosen.iter().any(|(own, _)| *own == cause);
-        let cause_of = &case.causes[cause];
-        if free
-            && !known
-            && (cause_of.form == Form::Parameters || cause_of.by_run)
-            && !cause_of.blows_by_run()
-        {
+        if shaped(cause) && !chosen.iter().any(|(own, _)| *own == cause) {
             chosen.push((cause, shape.to_vec()));
         }
     };
     for one in &found.accepted {
         consider(one.trial.cause, &one.trial.shape);
     }
-    for (cause, shape, gain) in round.causes.iter().filter(|one| one.2 >= CLOSE * greatest).take(MOST) {
-        // What is of two causes finds its shape beside them, as one of theirs.
-        if *gain > 0.0 && !case.causes[*cause].is_of_two() {
-            consider(*cause, shape);
-        }
+    // Levels of each run, and courses, have no shape and take what one between two points of a grid leaves, so they come first. What is
+    // of two causes finds its shape beside them, as one of theirs.
+    let near = round.causes.iter().filter(|(cause, _, gain)| {
+        *gain > 0.0 && *gain >= CLOSE * greatest && shaped(*cause) && !case.causes[*cause].is_of_two()
+    });
+    for (cause, shape, _) in near.take(MOST) {
+        consider(*cause, shape);
     }
     // Bells at some speeds follow teeth between others, which a grid of few speeds shows hardly any of.
     let by_speeds = |cause: usize| case.causes[cause].speeds() > 0;

@@ -22,8 +22,8 @@ const HELPS: f64 = 0.6;
 const MISSED: f64 = 0.7;
 /// What is hardly beyond chance has to take this share of the error of runs held out.
 const BORNE_OUT: f64 = 0.1;
-/// Of what is more than noise on runs held out a formula has to explain this share, where that is less than so many times the noise: a law
-/// explains nearly all of it, and what bends a model to the runs that it was made of does not.
+/// Of what is more than noise a formula has to explain this share, where that is less than so many times the noise: a law explains nearly
+/// all of it, and what bends a model to the runs that it was made of does not.
 const SHARE: f64 = 0.5;
 const LITTLE: f64 = 3.0;
 
@@ -105,8 +105,10 @@ pub fn proven(
         best.refined.learn_nothing(case);
         best.proof = prove(case, system, &best.refined, by)?;
     }
-    // What made not even the fitted runs better is nothing that anybody would miss.
-    let helped = fitted.after <= (1.0 - RISES) * best.proof.fitted.after;
+    // What made not even the fitted runs better is nothing that anybody would miss, nor is a little of the little that is left.
+    let noise = best.proof.told_noise(case, system, Some(&best.found));
+    let helped = fitted.after <= (1.0 - RISES) * best.proof.fitted.after
+        && !is_little(&fitted, &best.proof.fitted, noise);
     let bare = best.refined.causes.is_empty() && best.withheld.is_none() && faults.is_empty();
     if withdrawn && helped && bare {
         let unproven = best.found.unproven.iter();
@@ -220,11 +222,16 @@ fn without_idle(
     }
     let Some((with, without)) = with.zip(without) else { return Ok(None) };
     let noise = own.told_noise(case, system, Some(&best.found));
-    if cause.law.is_some() && without.after < LITTLE * noise && explained(&with, &without, noise) < SHARE {
+    if cause.law.is_some() && is_little(&with, &without, noise) {
         return Ok(Some((lesser, false)));
     }
     let faint = is_faint(best, place);
     Ok(is_idle(&with, &without, (needed, faint)).then_some((lesser, !faint)))
+}
+
+/// Whether hardly more than noise is left without a cause, and it explains hardly any of that.
+fn is_little(with: &Errors, without: &Errors, noise: f64) -> bool {
+    without.after < LITTLE * noise && explained(with, without, noise) < SHARE
 }
 
 /// Share of the mean square beyond noise that a cause explains.
@@ -427,5 +434,11 @@ mod tests {
         assert!((share(856.0, 900.0, 765.0) - (1.0 - 147_511.0 / 224_775.0)).abs() < 1e-6);
         assert!(share(856.0, 900.0, 765.0) < SHARE && share(3.0, 10.0, 2.9) > SHARE);
         assert_eq!(share(0.5, 2.0, 1.0), 1.0);
+        let little = |with: f64, without: f64| is_little(&errors(with), &errors(without), 102.0);
+        assert!(
+            little(139.2, 142.6),
+            "a tenth of what is beyond noise, where an equation took it and nothing was hidden"
+        );
+        assert!(!little(105.0, 142.6) && !little(300.0, 320.0));
     }
 }

@@ -83,6 +83,11 @@ pub(crate) fn search(bench: &Bench, options: &Options, stop: Stop) -> Result<Sea
         let families = FAMILIES.get(level).copied().unwrap_or(FAMILIES[2]);
         let (mut found, step) = hunt.grow(&beam, families, PEAKS[level.min(1)])?;
         hunt.sort(&mut found);
+        let switched = hunt.switched(&found[..found.len().min(EXCHANGED)])?;
+        if !switched.is_empty() {
+            found.extend(switched);
+            hunt.sort(&mut found);
+        }
         if level > 0 {
             let more = hunt.exchange(&found[..found.len().min(EXCHANGED)])?;
             found.extend(more);
@@ -282,6 +287,20 @@ impl Hunt<'_> {
             }
         }
         best.into_iter().map(|(_, factor)| factor).collect()
+    }
+
+    /// Pulses in the place of waves whose period is known by now, and of those that are harmonics of them: edges lead to no period
+    /// that is not nearly right, and a wave does.
+    fn switched(&self, laws: &[Polished]) -> Result<Vec<Polished>, SymbolicError> {
+        let mut starts = Vec::new();
+        for law in laws {
+            for wave in law.terms.iter().filter_map(Term::as_wave) {
+                let harmonic = |term: &Term| term.as_wave().is_some_and(|other| wave.has_harmonic(&other));
+                let rest: Vec<Term> = law.terms.iter().filter(|term| !harmonic(term)).cloned().collect();
+                starts.extend(pulses(&wave).map(|pulse| rest.iter().cloned().chain([pulse]).collect()));
+            }
+        }
+        self.polished(starts)
     }
 
     /// Each term of each law in turn gives its place to others.

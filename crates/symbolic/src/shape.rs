@@ -184,6 +184,19 @@ fn takes_size(shape: Shape, of: &Checked) -> bool {
 }
 
 impl Factor {
+    /// Whether another wave is this one or a harmonic of it.
+    pub fn has_harmonic(&self, other: &Self) -> bool {
+        /// Waves of edges that can be told beside the first.
+        const HIGHEST: f64 = 7.0;
+        /// Share of an order by which two periods may miss each other.
+        const ABOUT: f64 = 0.03;
+        let order = self.scale / other.scale;
+        let nearest = order.round();
+        self.variable == other.variable
+            && (1.0..=HIGHEST).contains(&nearest)
+            && (order - nearest).abs() < ABOUT * nearest
+    }
+
     /// Its value where the variable, or its size where it takes that, is u: the sine, and the cosine where it has a phase. What it
     /// remembers it has from [`Factor::along`] alone.
     fn value(&self, u: f64) -> (f64, f64) {

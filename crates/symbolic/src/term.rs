@@ -120,6 +120,14 @@ impl Term {
         family
     }
 
+    /// The wave that it is by itself.
+    pub fn as_wave(&self) -> Option<Factor> {
+        match self.factors[..] {
+            [factor] if factor.shape == Shape::Wave => Some(factor),
+            _ => None,
+        }
+    }
+
     /// Whether it is a plain or modulated wave.
     pub fn is_wave(&self) -> bool {
         self.factors.iter().any(|factor| factor.shape == Shape::Wave)

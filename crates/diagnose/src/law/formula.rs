@@ -3,7 +3,7 @@
 use crate::balances::balance::Kind;
 use crate::balances::noise::Whiteners;
 use crate::balances::rows::Row;
-use crate::causes::catalogue::{Cause, is_lost_share};
+use crate::causes::catalogue::{Cause, ELECTRIC, MECHANICAL, is_lost_share};
 use crate::causes::trial::{Pool, Shown, effect, lost_drive_n, per_newton, per_slip};
 use crate::choosing::state::{Part, Stand, State};
 use crate::law::nameable::{agreed_m_s2, moved_m_s2, variables, way_is_place};
@@ -25,6 +25,8 @@ pub struct Sought {
     pub kind: Kind,
     /// What the formula is.
     pub target: Target,
+    /// What takes power, in the effect `expression`.
+    pub consumer: &'static str,
     /// Whether places were recorded,
     placed: bool,
     /// and whether the way that a run came says them as well.
@@ -48,13 +50,14 @@ impl Sought {
         kind: Kind,
         target: Target,
     ) -> Result<Option<Self>, DiagnoseError> {
+        let consumer = consumer(case, kind)?;
         let shows = match (target, kind) {
             (Target::Share, Kind::Motion) if !case.driven() => return Ok(None),
             (Target::Share, Kind::Motion) => vec![(kind, lost_drive_n(case)?)],
             (Target::Share, Kind::Slip) => per_slip(case, system)?,
             (Target::Force, _) => per_newton(case, system)?,
-            (Target::Share, _) => of_powers(case, system, kind, &driven_w(case))?,
-            (Target::Power, _) => of_powers(case, system, kind, &ones(case))?,
+            (Target::Share, _) => of_powers(case, system, (kind, consumer), &driven_w(case))?,
+            (Target::Power, _) => of_powers(case, system, (kind, consumer), &ones(case))?,
         };
         // Of the motion a law may know the force that was measured alone: the one that it asks for is made of it.
         let drive_n = |(run, said): (&Recorded, &Said)| match (target, kind) {
@@ -71,6 +74,7 @@ impl Sought {
         Ok(shows.iter().any(|(shown, _)| *shown == kind).then_some(Self {
             kind,
             target,
+            consumer,
             placed,
             from_one_place: placed && way_is_place(case),
             somewhen: true,
@@ -280,25 +284,45 @@ fn ones(case: &Case) -> Vec<Vec<f64>> {
 
 /// What powers [W] make of the balance that they are drawn in, and of those in which that shows: what takes power at the shaft
 /// takes fuel for it.
-fn of_powers(case: &Case, system: &System, kind: Kind, power_w: &[Vec<f64>]) -> Result<Shown, DiagnoseError> {
+fn of_powers(
+    case: &Case,
+    system: &System,
+    (kind, consumer): (Kind, &'static str),
+    power_w: &[Vec<f64>],
+) -> Result<Shown, DiagnoseError> {
     let shows: &[Kind] = match kind {
         Kind::Shaft => &[Kind::Shaft, Kind::Fuel],
         Kind::Fuel => &[Kind::Fuel],
         _ => return Ok(vec![(kind, power_w.to_vec())]),
     };
     let shown = |kind: &Kind| {
-        let watts = per_watt(case, system, *kind)?;
+        let watts = per_watt(case, system, (*kind, consumer))?;
         let times = |run: &Vec<f64>| run.iter().map(|power_w| watts * power_w).collect();
         Ok((*kind, power_w.iter().map(times).collect()))
     };
     shows.iter().filter(|kind| system.has(**kind)).map(shown).collect()
 }
 
+/// What takes power in a balance: what an engine gives by torque or takes in fuel is taken off its shaft, and where a second store can give
+/// it, as from a battery, as electric power.
+fn consumer(case: &Case, kind: Kind) -> Result<&'static str, DiagnoseError> {
+    if !matches!(kind, Kind::Shaft | Kind::Fuel) {
+        return Ok(ELECTRIC);
+    }
+    let study = &case.study;
+    let model = study.model_of(study.scenario(), &case.runs[0].measured, &study.priors())?;
+    Ok(if model.driveline.needs_management() { ELECTRIC } else { MECHANICAL })
+}
+
 /// Power at the shaft or in the fuel that a consumer of one watt takes, on average.
-fn per_watt(case: &Case, system: &System, kind: Kind) -> Result<f64, DiagnoseError> {
+fn per_watt(
+    case: &Case,
+    system: &System,
+    (kind, consumer): (Kind, &'static str),
+) -> Result<f64, DiagnoseError> {
     /// A consumer of a usual size [W].
     const USUAL_W: f64 = 1000.0;
-    let consumer = Cause::consumer();
+    let consumer = Cause::consumer(consumer);
     let column = effect(case, system, &consumer, USUAL_W, &|_| consumer.written(&[USUAL_W]))?;
     let (mut sum, mut count) = (0.0, 0.0);
     for (chunk, rows) in system.chunks.iter().zip(&column) {

@@ -2,7 +2,7 @@
 
 use crate::Case;
 use crate::balances::balance::Kind;
-use crate::causes::catalogue::{Cause, LawText};
+use crate::causes::catalogue::{Cause, ELECTRIC, LawText};
 use crate::causes::losses::SPEED_SQUARED;
 use crate::causes::trial::Pool;
 use crate::choosing::search::Found;
@@ -89,7 +89,7 @@ pub fn outgrown(case: &mut Case, pool: &mut Pool, found: &Found) -> Option<Part>
     };
     let power_w = value * watts;
     let text = LawText {
-        role: "auxiliary_power",
+        role: ELECTRIC,
         text: format!("a1_w * {}", law.text),
         constants_text: law.constants_text(power_w),
         constants: std::iter::once(constant("a1_w", "W", power_w, Some(sd * watts)))

@@ -36,6 +36,10 @@ pub const CHANNELS: [(&str, &str); 21] = [
 /// What a law of a force is in the effect `expression`, and one of how wheels slip.
 const RESISTANCE: &str = "resistance";
 const SLIP: &str = "slip";
+/// Power that an electric consumer takes, which an engine pays for through its alternator,
+pub const ELECTRIC: &str = "auxiliary_power";
+/// and what is taken off its shaft.
+pub const MECHANICAL: &str = "shaft_power";
 
 /// Whether a law is a share of the drive's force that is lost on its way; a slip is a share of the speed.
 pub fn is_lost_share(target: Target, kind: Kind) -> bool {
@@ -82,8 +86,9 @@ impl LawText {
         self.text.contains("latched(") || self.depends_on.contains(&PLACE)
     }
 
-    /// The text of a law of a balance. A share of the drive that is lost before its force was measured takes power alone.
-    pub fn new(law: &headland_symbolic::Law, target: Target, kind: Kind) -> Self {
+    /// The text of a law of a balance, which takes its power, where it does, as a consumer in a role. A share of the drive that is lost
+    /// before its force was measured takes power alone.
+    pub fn new(law: &headland_symbolic::Law, (target, kind): (Target, Kind), consumer: &'static str) -> Self {
         /// Every piece of it was one of about a dozen: ln of that.
         const PER_PIECE: f64 = 2.5;
         let lost = is_lost_share(target, kind);
@@ -95,7 +100,7 @@ impl LawText {
                 Target::Force => RESISTANCE,
                 Target::Share if kind == Kind::Slip => SLIP,
                 Target::Share if kind == Kind::Motion => "loss_share",
-                Target::Share | Target::Power => "auxiliary_power",
+                Target::Share | Target::Power => consumer,
             },
             text: match target {
                 Target::Share if lost && kind != Kind::Motion => format!("abs(F_drive * v) * ({})", law.text),
@@ -124,9 +129,9 @@ impl LawText {
 }
 
 impl Cause {
-    /// A consumer that is always on, whether or not any is among the causes that are tried.
-    pub fn consumer() -> Self {
-        Self::of_law(LawText::constant("auxiliary_power", "power_w"), Kind::Fuel)
+    /// A consumer in a role that is always on, whether or not any is among the causes that are tried.
+    pub fn consumer(role: &'static str) -> Self {
+        Self::of_law(LawText::constant(role, "power_w"), Kind::Fuel)
     }
 
     /// A force against the motion that is always there.

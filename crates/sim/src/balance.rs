@@ -65,6 +65,9 @@ pub(crate) struct Given {
     pub driver_rate: f64,
     /// Whether the motion is recorded: then it was driven, whatever effects would have allowed.
     pub driven: bool,
+    /// Whether the vehicle goes on from sample to sample as it was recorded, whatever the forces are: then effects are asked for what each
+    /// of them does, and not for what is left of the ground's resistance.
+    pub sampled: bool,
 }
 
 /// What the forces make, for powers that follow it.

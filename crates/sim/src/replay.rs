@@ -408,7 +408,7 @@ impl<'a> Tape<'a> {
                 (_, driven) if stands && !coasting => (Command::Accelerate(0.0), driven),
                 other => other,
             };
-            let given = Given { driven, ..given };
+            let given = Given { driven, sampled: !driven, ..given };
             let control = move |_: &Moment| (command, given);
             let instant = if index == 0 {
                 machine.set_motion(self.position_m[0], speed);

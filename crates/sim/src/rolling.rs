@@ -22,7 +22,8 @@ impl Model {
         let speed_m_s = situation.speed_m_s;
         let ground_n = self.ground_n(&situation, (speed_m_s * direction).max(0.0));
         // An effect may say that the ground resists less, and never that it drives.
-        let ground_n = ground_n.max(-(sums.resistance_n + sums.drawbar_n));
+        let least_n = if given.sampled { f64::NEG_INFINITY } else { -(sums.resistance_n + sums.drawbar_n) };
+        let ground_n = ground_n.max(least_n);
         let held_n = ground_n + sums.resistance_n + sums.drawbar_n;
 
         let range = layout.driveline.clone();

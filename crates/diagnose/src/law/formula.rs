@@ -3,7 +3,7 @@
 use crate::balances::balance::Kind;
 use crate::balances::noise::Whiteners;
 use crate::balances::rows::Row;
-use crate::causes::catalogue::{Cause, ELECTRIC, MECHANICAL, is_lost_share};
+use crate::causes::catalogue::{Cause, ELECTRIC, FORCE, MECHANICAL, RESISTANCE, is_lost_share};
 use crate::causes::trial::{Pool, Shown, effect, lost_drive_n, per_newton, per_slip};
 use crate::choosing::state::{Part, Stand, State};
 use crate::law::nameable::{agreed_m_s2, moved_m_s2, variables, way_is_place};
@@ -26,7 +26,7 @@ pub struct Sought {
     /// What the formula is.
     pub target: Target,
     /// What takes power, in the effect `expression`.
-    pub consumer: &'static str,
+    consumer: &'static str,
     /// Whether places were recorded,
     placed: bool,
     /// and whether the way that a run came says them as well.
@@ -92,6 +92,22 @@ impl Sought {
     /// Whether places were recorded, and whether the way that a run came says them as well.
     pub fn places(&self) -> (bool, bool) {
         (self.placed, self.from_one_place)
+    }
+
+    /// What a law is in the effect `expression`: a force that pushes more than all that resists only there pushes.
+    pub fn role(&self, case: &Case, law: &Law) -> &'static str {
+        /// Share of the samples.
+        const NOW_AND_THEN: f64 = 0.01;
+        if self.target != Target::Force {
+            return self.consumer;
+        }
+        let of_run = |(said, own): (&Said, &Vec<f64>)| {
+            let forces = said.resistance_n.iter().zip(own);
+            forces.filter(|(resistance, own)| **own < (-**resistance).min(0.0)).count()
+        };
+        let pushed: usize = case.nominal.iter().zip(&law.prediction).map(of_run).sum();
+        let all: usize = law.prediction.iter().map(Vec::len).sum();
+        if pushed as f64 > NOW_AND_THEN * all as f64 { FORCE } else { RESISTANCE }
     }
 
     /// Whether a law of a force hangs on the acceleration that it makes.

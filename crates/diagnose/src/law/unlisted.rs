@@ -378,13 +378,13 @@ fn with_less(
 
 /// The regressor of a law.
 fn add(case: &mut Case, system: &System, pool: &mut Pool, law: &Law, sought: &Sought) -> Part {
-    let Sought { kind, target, consumer, .. } = *sought;
+    let Sought { kind, target, .. } = *sought;
     let column = system.column(|own| {
         law.prediction.iter().enumerate().map(|(run, said)| sought.samples(own, run, said)).collect()
     });
     // A force shows in powers by the motion.
     let kind = if target == Target::Force { Kind::Motion } else { kind };
-    put(case, pool, Cause::of_law(LawText::new(law, (target, kind), consumer), kind), column)
+    put(case, pool, Cause::of_law(LawText::new(law, (target, kind), sought.role(case, law)), kind), column)
 }
 
 /// A law among the causes, with its regressor.

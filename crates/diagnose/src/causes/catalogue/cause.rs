@@ -1,6 +1,6 @@
 //! A cause that is tried: an effect of the simulator, how its parameters are written, and what it can be.
 
-use super::law_text::LawText;
+use super::law_text::{FORCE, LawText, RESISTANCE};
 use super::powers::START;
 use super::term::Term;
 use crate::balances::balance::Kind;
@@ -297,7 +297,7 @@ impl Cause {
             return own.equation.clone();
         }
         match &self.law {
-            Some(LawText { role: "resistance", text, .. }) => format!("F = {text}"),
+            Some(LawText { role: RESISTANCE | FORCE, text, .. }) => format!("F = {text}"),
             Some(LawText { role: "loss_share", text, .. }) => format!("F = |F_drive| ({text})"),
             Some(LawText { role: "slip", text, .. }) => format!("s = {text}"),
             Some(LawText { text, .. }) => format!("P = {text}"),
@@ -365,10 +365,9 @@ impl Cause {
         }
         if let Some(law) = &self.law {
             let LawText { role, text, constants_text, .. } = law;
-            return format!(
-                "expression({role}: \"{:?} * ({text})\", constants: {constants_text})",
-                values[0]
-            );
+            // What resists counts backward.
+            let times = if *role == FORCE { -values[0] } else { values[0] };
+            return format!("expression({role}: \"{times:?} * ({text})\", constants: {constants_text})");
         }
         match self.id {
             "wind" => {

@@ -34,7 +34,9 @@ pub const CHANNELS: [(&str, &str); 21] = [
 ];
 
 /// What a law of a force is in the effect `expression`, and one of how wheels slip.
-const RESISTANCE: &str = "resistance";
+pub const RESISTANCE: &str = "resistance";
+/// A force that may push as well: what only resists never moves a vehicle.
+pub const FORCE: &str = "force";
 const SLIP: &str = "slip";
 /// Power that an electric consumer takes, which an engine pays for through its alternator,
 pub const ELECTRIC: &str = "auxiliary_power";
@@ -86,9 +88,9 @@ impl LawText {
         self.text.contains("latched(") || self.depends_on.contains(&PLACE)
     }
 
-    /// The text of a law of a balance, which takes its power, where it does, as a consumer in a role. A share of the drive that is lost
-    /// before its force was measured takes power alone.
-    pub fn new(law: &headland_symbolic::Law, (target, kind): (Target, Kind), consumer: &'static str) -> Self {
+    /// The text of a law of a balance, which is a force or takes power in a role. A share of the drive that is lost before its force was
+    /// measured takes power alone.
+    pub fn new(law: &headland_symbolic::Law, (target, kind): (Target, Kind), role: &'static str) -> Self {
         /// Every piece of it was one of about a dozen: ln of that.
         const PER_PIECE: f64 = 2.5;
         let lost = is_lost_share(target, kind);
@@ -97,10 +99,9 @@ impl LawText {
         depends_on.dedup();
         Self {
             role: match target {
-                Target::Force => RESISTANCE,
                 Target::Share if kind == Kind::Slip => SLIP,
                 Target::Share if kind == Kind::Motion => "loss_share",
-                Target::Share | Target::Power => consumer,
+                Target::Force | Target::Share | Target::Power => role,
             },
             text: match target {
                 Target::Share if lost && kind != Kind::Motion => format!("abs(F_drive * v) * ({})", law.text),
@@ -148,7 +149,7 @@ impl Cause {
     pub fn of_law(law: LawText, kind: Kind) -> Self {
         let balances: &'static [Kind] = match kind {
             // What resists shows in the powers that it takes; a share that is lost, in what is left of the force.
-            Kind::Motion if law.role == RESISTANCE => MOTION,
+            Kind::Motion if [RESISTANCE, FORCE].contains(&law.role) => MOTION,
             Kind::Motion => &[Kind::Motion],
             Kind::Slip => SLIPS,
             Kind::Shaft | Kind::Fuel => &[Kind::Fuel],

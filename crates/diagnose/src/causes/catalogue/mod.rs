@@ -9,7 +9,7 @@ mod sensors;
 mod term;
 
 pub use cause::{Cause, Class, Form};
-pub use law_text::{CHANNELS, ELECTRIC, LawText, MECHANICAL, is_lost_share};
+pub use law_text::{CHANNELS, ELECTRIC, FORCE, LawText, MECHANICAL, RESISTANCE, is_lost_share};
 pub use sensors::{ARTEFACTS, MOST_SCALE, MOST_SPEED_SCALE};
 pub use term::Term;
 

@@ -1,7 +1,7 @@
 //! Claims that do not hold where nothing was fitted: what makes runs worse that it never saw is not known.
 
 use crate::balances::balance::Kind;
-use crate::causes::catalogue::{Class, Form};
+use crate::causes::catalogue::{Class, Form, LawText};
 use crate::causes::trial::Pool;
 use crate::choosing::search::{Found, Rival, worth};
 use crate::choosing::state::{Part, Stand, State};
@@ -23,8 +23,9 @@ const MISSED: f64 = 0.7;
 /// What is hardly beyond chance has to take this share of the error of runs held out.
 const BORNE_OUT: f64 = 0.1;
 /// Of what is more than noise a formula has to explain this share, where that is less than so many times the noise: a law explains nearly
-/// all of it, and what bends a model to the runs that it was made of does not.
+/// all of it, and what bends a model to the runs that it was made of does not. One term bends less than several.
 const SHARE: f64 = 0.5;
+const SHARE_OF_ONE: f64 = 0.3;
 const LITTLE: f64 = 3.0;
 
 /// Growth of ln p that the best of all formulas needs: a law of two terms is one of some ten thousand squared, and its constants are
@@ -108,7 +109,7 @@ pub fn proven(
     // What made not even the fitted runs better is nothing that anybody would miss, nor is a little of the little that is left.
     let noise = best.proof.told_noise(case, system, Some(&best.found));
     let helped = fitted.after <= (1.0 - RISES) * best.proof.fitted.after
-        && !is_little(&fitted, &best.proof.fitted, noise);
+        && !is_little(&fitted, &best.proof.fitted, (noise, SHARE));
     let bare = best.refined.causes.is_empty() && best.withheld.is_none() && faults.is_empty();
     if withdrawn && helped && bare {
         let unproven = best.found.unproven.iter();
@@ -222,16 +223,17 @@ fn without_idle(
     }
     let Some((with, without)) = with.zip(without) else { return Ok(None) };
     let noise = own.told_noise(case, system, Some(&best.found));
-    if cause.law.is_some() && is_little(&with, &without, noise) {
+    let share = |law: &LawText| if law.terms > 1 { SHARE } else { SHARE_OF_ONE };
+    if cause.law.as_ref().is_some_and(|law| is_little(&with, &without, (noise, share(law)))) {
         return Ok(Some((lesser, false)));
     }
     let faint = is_faint(best, place);
     Ok(is_idle(&with, &without, (needed, faint)).then_some((lesser, !faint)))
 }
 
-/// Whether hardly more than noise is left without a cause, and it explains hardly any of that.
-fn is_little(with: &Errors, without: &Errors, noise: f64) -> bool {
-    without.after < LITTLE * noise && explained(with, without, noise) < SHARE
+/// Whether hardly more than noise is left without a cause, and it explains less than a share of that.
+fn is_little(with: &Errors, without: &Errors, (noise, share): (f64, f64)) -> bool {
+    without.after < LITTLE * noise && explained(with, without, noise) < share
 }
 
 /// Share of the mean square beyond noise that a cause explains.
@@ -434,7 +436,7 @@ mod tests {
         assert!((share(856.0, 900.0, 765.0) - (1.0 - 147_511.0 / 224_775.0)).abs() < 1e-6);
         assert!(share(856.0, 900.0, 765.0) < SHARE && share(3.0, 10.0, 2.9) > SHARE);
         assert_eq!(share(0.5, 2.0, 1.0), 1.0);
-        let little = |with: f64, without: f64| is_little(&errors(with), &errors(without), 102.0);
+        let little = |with: f64, without: f64| is_little(&errors(with), &errors(without), (102.0, SHARE));
         assert!(
             little(139.2, 142.6),
             "a tenth of what is beyond noise, where an equation took it and nothing was hidden"

@@ -113,6 +113,14 @@ fn a_wave_along_the_path_is_found_as_an_equation_that_runs() {
     is_found_as_a_law(WAVE, &to_and_fro(recorded(0.069, WAVE)));
 }
 
+/// What pushes more than the ground resists is a force, and what only resists would not be let drive.
+#[test]
+fn a_wave_that_pushes_is_found_as_an_equation_that_runs() {
+    const PUSHING: &str =
+        r#"expression(force: "-a_n * cos(x / l_m)", constants: {"a_n": 12000.0, "l_m": 3.7})"#;
+    is_found_as_a_law(PUSHING, &to_and_fro(recorded(0.069, PUSHING)));
+}
+
 /// Waves of a road that was driven one way are slopes by their name, however short the formula that draws them.
 #[test]
 fn a_wave_that_was_driven_one_way_is_not_told_from_slopes() {

@@ -366,6 +366,19 @@ fn resistances_that_are_taken_away_never_drive() {
     assert_eq!(last(&resting, "speed_m_s"), 0.0);
 }
 
+/// 200 N of the ground less 300 N: driven by 200 N the vehicle gains 0.2 m/s², as on ground that resists nothing; followed from sample to
+/// sample the forces are 200 N − (200 − 300) N, so that what an effect takes is told whatever it leaves.
+#[test]
+fn from_sample_to_sample_an_effect_takes_all_that_it_takes() {
+    let pushed = model(vec![does(Action { resistance_n: -300.0, ..Action::default() })]);
+    let held = hold(&model(vec![]));
+    for (window_s, expected_m_s2) in [(None, 0.2), (Some(0.0), 0.3)] {
+        let replayed = replay(&pushed, &held.trace, &Replay { window_s, ..by_force() }).unwrap();
+        let found = replayed.trace.get("acceleration_m_s2").unwrap()[5];
+        assert!((found - expected_m_s2).abs() < 1e-9, "{window_s:?}: {found}");
+    }
+}
+
 /// Asked for 1200 N and limited to 700 N: (700 − 200) / 1000 = 0.5 m/s².
 #[test]
 fn a_limit_holds_what_the_driver_asks_and_not_what_was_recorded() {

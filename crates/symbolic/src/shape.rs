@@ -420,3 +420,18 @@ impl Factor {
         if let Shape::FreePower(power) = self.shape { power } else { 1.0 }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What goes on and off every 3.7 s for half of it has a wave of 3.7 s in it, one of a third of that, of a fifth.
+    #[test]
+    fn a_wave_has_harmonics() {
+        let wave = |variable, scale| Factor { variable, shape: Shape::Wave, scale, centre: 0.0 };
+        let first = wave(0, 3.7);
+        assert!([3.7, 1.235, 0.745].into_iter().all(|scale| first.has_harmonic(&wave(0, scale))));
+        assert!([7.4, 2.9, 0.2].into_iter().all(|scale| !first.has_harmonic(&wave(0, scale))));
+        assert!(!first.has_harmonic(&wave(1, 3.7)), "of another variable");
+    }
+}

@@ -483,6 +483,7 @@ fn enough(fit: &[bool], rows: &[Vec<f64>]) -> Vec<bool> {
 mod tests {
     use super::{Sought, enough, steepest_kg, straight};
     use crate::balances::balance::Kind;
+    use crate::causes::catalogue::ELECTRIC;
     use headland_symbolic::{Law, Target};
 
     #[test]
@@ -491,6 +492,7 @@ mod tests {
         let sought = Sought {
             kind: Kind::Motion,
             target: Target::Share,
+            consumer: ELECTRIC,
             placed: false,
             from_one_place: false,
             somewhen: true,

@@ -174,3 +174,16 @@ impl Cause {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A law counts what resists; a force of the effect counts forward.
+    #[test]
+    fn a_law_that_pushes_is_written_as_a_force_the_other_way() {
+        let written = |role| Cause::of_law(LawText::constant(role, "a_n"), Kind::Motion).written(&[2.0]);
+        assert!(written(RESISTANCE).starts_with("expression(resistance: \"2.0 * (a_n)\""));
+        assert!(written(FORCE).starts_with("expression(force: \"-2.0 * (a_n)\""));
+    }
+}

@@ -63,11 +63,28 @@ pub(crate) struct Given {
     pub engine_speed_rad_s: f64,
     /// How fast what the driver remembers changes, per second.
     pub driver_rate: f64,
-    /// Whether the motion is recorded: then it was driven, whatever effects would have allowed.
-    pub driven: bool,
-    /// Whether the vehicle goes on from sample to sample as it was recorded, whatever the forces are: then effects are asked for what each
-    /// of them does, and not for what is left of the ground's resistance.
-    pub sampled: bool,
+    /// Whether a recorded motion is followed.
+    pub followed: Followed,
+}
+
+/// How a recorded motion is followed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Followed {
+    /// Not at all: the forces make the motion.
+    #[default]
+    Not,
+    /// It was driven, whatever effects would have allowed.
+    Driven,
+    /// From sample to sample, whatever the forces are: effects are asked for what each of them does, and not for what is left of the
+    /// ground's resistance.
+    Sampled,
+}
+
+impl Given {
+    /// Whether the motion itself is what drives.
+    pub fn is_driven(&self) -> bool {
+        self.followed == Followed::Driven
+    }
 }
 
 /// What the forces make, for powers that follow it.
@@ -214,7 +231,7 @@ impl Asked<'_> {
     #[inline(always)]
     pub fn held_by_ground(&self, brake_n: f64, most_n: f64, driving_n: f64, held_n: f64) -> (f64, bool) {
         // What was recorded was driven, whatever the ground of the model would have held.
-        let short = brake_n > most_n && !self.given.driven;
+        let short = brake_n > most_n && !self.given.is_driven();
         if !short || (self.direction == 0.0 && driving_n.abs() <= held_n + most_n) {
             return (brake_n, false);
         }
@@ -339,7 +356,7 @@ impl Model {
             engine_friction_n_m: sums.engine_friction_n_m,
             battery_resistance_ohm: sums.battery_resistance_ohm,
             engine_speed_rad_s: given.engine_speed_rad_s,
-            recorded: given.driven || matches!(command, Command::Recorded(_)),
+            recorded: given.is_driven() || matches!(command, Command::Recorded(_)),
         };
         let asked = Asked {
             situation,
@@ -391,7 +408,7 @@ impl Model {
             (least_n, most_n) = (least_n.max(least), most_n.min(most));
         }
         let wanted_n = situation.tractive_force_n;
-        let most_n = if given.driven { f64::INFINITY } else { most_n };
+        let most_n = if given.is_driven() { f64::INFINITY } else { most_n };
         match command {
             Command::Accelerate(_) | Command::Push(_) => wanted_n.max(least_n).min(most_n),
             Command::Coast | Command::Recorded(_) => wanted_n,

@@ -210,7 +210,7 @@ impl Model {
                 engine_friction_n_m: sums.engine_friction_n_m,
                 battery_resistance_ohm: sums.battery_resistance_ohm,
                 engine_speed_rad_s: given.engine_speed_rad_s,
-                recorded: given.driven || matches!(command, Command::Recorded(_)),
+                recorded: given.is_driven() || matches!(command, Command::Recorded(_)),
             },
         };
         let rolled = self.driven(&asked, &sums, motion, rates);

@@ -4,7 +4,7 @@
 //! recorded torque, a recorded tractive force, or neutral) is given, and the model says how the vehicle moved. Long
 //! recordings are driven in windows that start from the recorded speed, so that errors do not pile up without bound.
 
-use crate::balance::{Command, Given};
+use crate::balance::{Command, Followed, Given};
 use crate::ledger::Ledger;
 use crate::recorder::Recorder;
 use crate::shaking::shaking_m2_s4;
@@ -408,7 +408,8 @@ impl<'a> Tape<'a> {
                 (_, driven) if stands && !coasting => (Command::Accelerate(0.0), driven),
                 other => other,
             };
-            let given = Given { driven, sampled: !driven, ..given };
+            let followed = if driven { Followed::Driven } else { Followed::Sampled };
+            let given = Given { followed, ..given };
             let control = move |_: &Moment| (command, given);
             let instant = if index == 0 {
                 machine.set_motion(self.position_m[0], speed);

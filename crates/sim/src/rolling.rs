@@ -2,7 +2,7 @@
 
 #![allow(clippy::inline_always, reason = "a part of the balance")]
 
-use crate::balance::{Asked, Command, Rolled, Sums};
+use crate::balance::{Asked, Command, Followed, Rolled, Sums};
 use crate::deciding::Deciding;
 use crate::{Model, Resistance};
 use headland_plugin::{Contact, Situation};
@@ -22,7 +22,8 @@ impl Model {
         let speed_m_s = situation.speed_m_s;
         let ground_n = self.ground_n(&situation, (speed_m_s * direction).max(0.0));
         // An effect may say that the ground resists less, and never that it drives.
-        let least_n = if given.sampled { f64::NEG_INFINITY } else { -(sums.resistance_n + sums.drawbar_n) };
+        let sampled = given.followed == Followed::Sampled;
+        let least_n = if sampled { f64::NEG_INFINITY } else { -(sums.resistance_n + sums.drawbar_n) };
         let ground_n = ground_n.max(least_n);
         let held_n = ground_n + sums.resistance_n + sums.drawbar_n;
 
@@ -55,7 +56,7 @@ impl Model {
         let mut delivery = self.deliver(&demand, behind, own, &mut rates[range.clone()]);
         // A recorded motion was driven by what it took, and a recorded force was there, whatever the driveline of the model
         // could have given.
-        let recorded = given.driven || matches!(command, Command::Recorded(_));
+        let recorded = given.is_driven() || matches!(command, Command::Recorded(_));
         if sums.slips() && delivery.force_n != demand.force_n && !recorded {
             demand.speed_m_s = sums.turning_m_s(speed_m_s, delivery.force_n, direction);
             delivery = self.deliver(&demand, behind, own, &mut rates[range]);

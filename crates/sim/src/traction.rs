@@ -163,7 +163,7 @@ impl Model {
         }
         let root = self.slip(stance, asked, sums, goal, near);
         // What was recorded was driven, whatever the ground of the model would have given.
-        let recorded = asked.given.driven || matches!(asked.command, Command::Recorded(_));
+        let recorded = asked.given.is_driven() || matches!(asked.command, Command::Recorded(_));
         let force_n = match goal {
             Goal::Force(force_n) if root.reached || recorded => force_n,
             _ => stance.grip(root.at).force_n,

@@ -68,7 +68,8 @@ pub fn diagnose(
     progress: &dyn Progress,
 ) -> Result<Diagnosed, DiagnoseError> {
     let look = |options: &Options| diagnose_once(scenario, recording, registry, options, progress);
-    second::opinion(look(options)?, options, look)
+    let wind_known = recording.runs.iter().any(|run| run.trace.get("wind_speed_m_s").is_some());
+    second::opinion(look(options)?, options, wind_known, look)
 }
 
 /// Brakes are looked for so many times more, once a delay was found.

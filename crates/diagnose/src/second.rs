@@ -4,8 +4,8 @@
 //! there; a clock that runs apart from the others moves the begin of a run little and its end much, and does a part of what a
 //! late speed does; a load that comes and goes in time follows what goes with the acceleration; another scale of a force or a
 //! speed is all that goes with it, before a law that nobody listed can say what is missing, since sensors come first; and a
-//! listed cause that goes about as a law does hides that law from causes that stand beside it alone. A search that begins with
-//! one of them may not come back. Where one is claimed and looks like that, by lying off nought all along, by standing beside
+//! listed cause that goes about as a law does hides that law from causes that stand beside it alone. A wind beside one that was
+//! recorded makes up for what that is not at the vehicle. A search that begins with one of them may not come back. Where one is claimed and looks like that, by lying off nought all along, by standing beside
 //! physics or by leaving more than noise, the runs are looked at once more without it, and the runs that were held out decide.
 
 use crate::choosing::rivals::twin;
@@ -24,6 +24,8 @@ const SCALES: [&str; 2] = ["force_scale", "speed_scale"];
 const LOAD: &str = "payload_change";
 /// A map with one value.
 const LEVEL: &str = "rolling_resistance";
+/// What blows, where the wind that was recorded is not what blew at the vehicle.
+const WIND: &str = "wind";
 /// What nobody listed.
 const LAW: &str = "unlisted";
 /// What is left is this many times the noise, and more.
@@ -65,6 +67,12 @@ fn doubtful(findings: &[FindingReport], lack_of_fit: f64) -> Vec<Vec<String>> {
     known.iter().chain(&hides).map(owned).collect()
 }
 
+/// The wind, where it stands beside other causes and leaves more than noise.
+fn blown(findings: &[FindingReport], lack_of_fit: f64) -> Option<Vec<String>> {
+    let among = findings.len() > 1 && findings.iter().any(|finding| finding.id == WIND);
+    (among && lack_of_fit > MORE_THAN_NOISE).then(|| vec![WIND.to_owned()])
+}
+
 /// A map follows the runs that it was made of; what stands in its place may leave so many times the error in those.
 const FOLLOWS: f64 = 1.4;
 
@@ -91,16 +99,16 @@ fn measure(one: &Diagnosis, other: &Diagnosis) -> fn(&FitRuns) -> f64 {
     }
 }
 
-/// Whether another opinion takes the place of the first, in which `id` was doubtful. A clock that runs apart is one thing, and so is a
-/// scale; what takes more than it does to say the same is a patch. And a map that goes by another name, which was named beside it, is
+/// Whether another opinion takes the place of the first, in which `id` was doubtful. A clock that runs apart is one thing, and so are a
+/// scale and a wind; what takes more than they do to say the same is a patch. And a map that goes by another name, which was named beside it, is
 /// the same.
 fn wins(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
-    let of_sensors = id == CLOCK || SCALES.contains(&id);
-    let patches = of_sensors && other.findings.len() > first.findings.len();
+    let is_one = id == CLOCK || id == WIND || SCALES.contains(&id);
+    let patches = is_one && other.findings.len() > first.findings.len();
     let left = measure(other, first);
     let held_out = |one: &Diagnosis| Some((one.findings.len(), left(one.fit.held_out.as_ref()?)));
     let plainer = held_out(other).zip(held_out(first)).is_some_and(|(other, first)| is_plainer(other, first));
-    let better = is_better(id, other, first) || of_sensors && plainer;
+    let better = is_better(id, other, first) || is_one && plainer;
     let open = leaves_more(other.fit.lack_of_fit, first.fit.lack_of_fit);
     better && !patches && !open && !is_renamed(id, &other.findings, &first.findings)
 }
@@ -110,7 +118,7 @@ fn leaves_more(other: f64, first: f64) -> bool {
     first <= MORE_THAN_NOISE && other > MORE_THAN_NOISE
 }
 
-/// Whether fewer causes, but not none, tell the runs held out no worse: a sensor at fault is then one cause too many. Each by their number
+/// Whether fewer causes, but not none, tell the runs held out no worse: a sensor at fault, or a wind, is then one cause too many. Each by their number
 /// and the share of the error that they leave.
 fn is_plainer((others, error): (usize, f64), (first, error_first): (usize, f64)) -> bool {
     (1..first).contains(&others) && error <= error_first
@@ -125,14 +133,18 @@ fn is_renamed(id: &str, others: &[FindingReport], first: &[FindingReport]) -> bo
     first.iter().any(named) && others.iter().any(|finding| finding.id == twin)
 }
 
-/// The first opinion, or one without what is doubtful in it where that is better; `look` looks with other options.
+/// The first opinion, or one without what is doubtful in it where that is better; a wind is where `wind_known`. `look` looks with other
+/// options.
 pub fn opinion(
     first: Diagnosed,
     options: &Options,
+    wind_known: bool,
     look: impl Fn(&Options) -> Result<Diagnosed, DiagnoseError>,
 ) -> Result<Diagnosed, DiagnoseError> {
     let mut best = first;
-    for ids in doubtful(&best.diagnosis.findings, best.diagnosis.fit.lack_of_fit) {
+    let (findings, lack_of_fit) = (&best.diagnosis.findings, best.diagnosis.fit.lack_of_fit);
+    let wind = blown(findings, lack_of_fit).filter(|_| wind_known);
+    for ids in doubtful(findings, lack_of_fit).into_iter().chain(wind) {
         let without = options.without.iter().chain(&ids).cloned().collect();
         match look(&Options { without, ..options.clone() }) {
             Ok(other) if wins(&ids[0], &other.diagnosis, &best.diagnosis) => best = other,
@@ -146,7 +158,10 @@ pub fn opinion(
 
 #[cfg(test)]
 mod tests {
-    use super::{CLOCK, LATE, LAW, LEVEL, LOAD, MAP, SCALES, doubtful, is_plainer, is_renamed, leaves_more};
+    use super::{
+        CLOCK, LATE, LAW, LEVEL, LOAD, MAP, SCALES, WIND, blown, doubtful, is_plainer, is_renamed,
+        leaves_more,
+    };
     use crate::told::report::FindingKind::{Artefact, Physics};
     use crate::told::report::{ParameterReport, finding};
 
@@ -165,6 +180,15 @@ mod tests {
     fn what_leaves_a_balance_open_that_was_closed_is_no_better() {
         assert!(leaves_more(2.5, 1.1));
         assert!(!leaves_more(2.5, 3.0) && !leaves_more(1.2, 1.1) && !leaves_more(1.1, 2.5));
+    }
+
+    /// A drag area in a wind that was recorded with noise was told as a speed law and a wind.
+    #[test]
+    fn a_wind_beside_another_cause_is_doubted_where_more_than_noise_is_left() {
+        let own = |id: &'static str| finding(Physics, id, None);
+        assert_eq!(blown(&[own("rolling_speed_law"), own(WIND)], 2.2).unwrap(), [WIND]);
+        assert!(blown(&[own("rolling_speed_law"), own(WIND)], 1.1).is_none());
+        assert!(blown(&[own(WIND)], 2.2).is_none() && blown(&[own("mass"), own(LOAD)], 2.2).is_none());
     }
 
     /// One that drifts is looked at without the clock, and beside a late speed without both.

@@ -94,12 +94,17 @@ impl Sought {
         (self.placed, self.from_one_place)
     }
 
-    /// What a law is in the effect `expression`: a force that pushes more than all that resists only there pushes.
+    /// What a law is in the effect `expression`: a force that pushes more than all that resists only there pushes. Nothing pushes by the
+    /// clock: steps of a coarse speed come at the same times in runs that slow down alike.
     pub fn role(&self, case: &Case, law: &Law) -> &'static str {
         /// Share of the samples.
         const NOW_AND_THEN: f64 = 0.01;
+        const CLOCK: &str = "t";
         if self.target != Target::Force {
             return self.consumer;
+        }
+        if law.names(CLOCK) {
+            return RESISTANCE;
         }
         let of_run = |(said, own): (&Said, &Vec<f64>)| {
             let forces = said.resistance_n.iter().zip(own);

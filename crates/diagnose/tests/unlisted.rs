@@ -405,7 +405,8 @@ fn teeth_of_a_variator_are_no_changes_of_range() {
 /// A fan that takes over where no wind cools any more, and only fuel tells of it.
 #[test]
 fn a_consumer_by_a_law_of_speed_is_found_in_the_fuel_and_in_watts() {
-    const FAN: &str = r#"expression(auxiliary_power: "p_w * exp(-v / v0_m_s)", constants: {"p_w": 30000.0, "v0_m_s": 2.5})"#;
+    const FAN: &str =
+        r#"expression(shaft_power: "p_w * exp(-v / v0_m_s)", constants: {"p_w": 50000.0, "v0_m_s": 2.5})"#;
     let registry = headland_stock::registry();
     let noisy = speed_and_fuel(1e-4);
     let channels = ["speed_m_s", "position_m", "heading_rad", "fuel_rate_kg_s"];
@@ -420,15 +421,11 @@ fn a_consumer_by_a_law_of_speed_is_found_in_the_fuel_and_in_watts() {
     let model = improved.model(&registry).unwrap();
     let power_w = |speed_m_s: f64| {
         let situation = Situation { speed_m_s, ..Situation::default() };
-        model
-            .effects
-            .iter()
-            .map(|one| one.plugin.act(&situation, &[], &mut []).auxiliary_power_w)
-            .sum::<f64>()
+        model.effects.iter().map(|one| one.plugin.act(&situation, &[], &mut []).shaft_power_w).sum::<f64>()
     };
     // What is the same at every speed belongs to the consumers that are known.
     let told = power_w(2.0) - power_w(6.0);
-    let truth = 30_000.0 * ((-2.0_f64 / 2.5).exp() - (-6.0_f64 / 2.5).exp());
+    let truth = 50_000.0 * ((-2.0_f64 / 2.5).exp() - (-6.0_f64 / 2.5).exp());
     assert!((told / truth - 1.0).abs() < 0.15, "{told} W, {truth} W: {}", said.answer);
 }
 

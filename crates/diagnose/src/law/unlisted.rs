@@ -173,8 +173,7 @@ fn candidates(
     starts.extend(anywhen.iter().map(|anywhen| (Vec::new(), anywhen)));
     for (start, sought) in starts {
         let told = laws(case, system, pool, &start, &found.stand, sought)?;
-        if let Some(law) = told.first().filter(|law| (start.is_empty() || law.terms > 1) && rows <= MANY_ROWS)
-        {
+        if let Some(law) = told.first().filter(|_| start.is_empty() && rows <= MANY_ROWS) {
             candidates.extend(with_less(case, system, pool, law, sought));
         }
         // Terms more may patch what a good one leaves.
@@ -199,10 +198,6 @@ fn candidates(
                 && let Some(better) =
                     first_sound(case, laws(case, system, pool, &start, &settled, &moved)?, &moved)
             {
-                // What more terms say of what the first left may be a listed cause beside it.
-                if better.terms > law.terms && rows <= MANY_ROWS {
-                    candidates.push(with(&part));
-                }
                 law = better;
                 part = add(case, system, pool, &law, &moved);
             }

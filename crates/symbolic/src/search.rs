@@ -83,9 +83,9 @@ pub(crate) fn search(bench: &Bench, options: &Options, stop: Stop) -> Result<Sea
         let families = FAMILIES.get(level).copied().unwrap_or(FAMILIES[2]);
         let (mut found, step) = hunt.grow(&beam, families, PEAKS[level.min(1)])?;
         hunt.sort(&mut found);
-        let switched = hunt.switched(&found[..found.len().min(EXCHANGED)])?;
-        if !switched.is_empty() {
-            found.extend(switched);
+        let clocked = hunt.clocked(&found[..found.len().min(EXCHANGED)])?;
+        if !clocked.is_empty() {
+            found.extend(clocked);
             hunt.sort(&mut found);
         }
         if level > 0 {
@@ -291,7 +291,7 @@ impl Hunt<'_> {
 
     /// Pulses in the place of waves whose period is known by now, and of those that are harmonics of them: edges lead to no period
     /// that is not nearly right, and a wave does.
-    fn switched(&self, laws: &[Polished]) -> Result<Vec<Polished>, SymbolicError> {
+    fn clocked(&self, laws: &[Polished]) -> Result<Vec<Polished>, SymbolicError> {
         let mut starts = Vec::new();
         for law in laws {
             for wave in law.terms.iter().filter_map(Term::as_wave) {

@@ -3,13 +3,15 @@
 //! [`coastdown`] turns coast-downs into rolling resistance and road loads with honest intervals.
 //! The statistics underneath know nothing of vehicles and serve any estimation: [`least_squares`] minimises,
 //! [`clusters`] pools runs and gives intervals that survive run-to-run variation, [`separable`] says what the
-//! data cannot tell apart, [`curved`] makes the curvature that nobody recorded, [`statistics`] holds quantiles and seeded draws.
+//! data cannot tell apart, [`curved`] makes the curvature that nobody recorded, [`laid`] the
+//! distance along a path that several runs share, [`statistics`] holds quantiles and seeded draws.
 
 pub mod clusters;
 pub mod coastdown;
 pub mod curved;
 pub mod cvt_map;
 pub mod fit;
+pub mod laid;
 pub mod least_squares;
 pub mod separable;
 pub mod statistics;

@@ -2,6 +2,7 @@
 
 use crate::curved::{self, is_straight, with_curvature};
 use crate::fit::{Fit, Parameter, Residuals, fit};
+use crate::laid;
 use crate::statistics::{mean, median};
 use headland_plugin::Registry;
 use headland_recording::{RecordedRun, Recording};
@@ -123,6 +124,8 @@ pub struct Study<'a> {
     paths: Vec<String>,
     /// What was decided on the way, for people.
     pub notes: Vec<String>,
+    /// Whether the scenario's path is straight, so that east and north along it say no more than the distance.
+    pub straight: bool,
     /// Asked before each replay whether to give up.
     pub stop: fn() -> bool,
 }
@@ -183,12 +186,17 @@ impl<'a> Study<'a> {
         registry: &'a Registry,
     ) -> Result<Self, StudyError> {
         let model = scenario.model(registry)?;
-        let turned = if is_straight(&model) { with_curvature(recording)? } else { None };
+        let straight = is_straight(&model);
+        let turned = if straight { with_curvature(recording)? } else { None };
         let mut notes = turned.as_ref().map_or_else(Vec::new, |(_, made)| curved::told(made));
-        let recording = turned.as_ref().map_or(recording, |(turned, _)| turned);
+        let mut recording = turned.map_or_else(|| recording.clone(), |(turned, _)| turned);
+        let along = laid::lay(&mut recording.runs)?;
+        if !along.is_empty() {
+            notes.push(format!("In {} {}.", along.join(", "), laid::SAID));
+        }
         let mut runs: Vec<Measured> = Vec::new();
         for (number, run) in recording.runs.iter().enumerate() {
-            let length_m = path_length_m(recording, run.path.as_deref());
+            let length_m = path_length_m(&recording, run.path.as_deref());
             let mut measured = measured(scenario, &model, run, length_m, &mut notes)?;
             let same = |other: &&RecordedRun| run.path.is_some() && other.path == run.path;
             measured.how.passes_before = recording.runs[..number].iter().filter(same).count();
@@ -227,7 +235,7 @@ impl<'a> Study<'a> {
             }
         }
         let notes = unique;
-        Ok(Self { scenario, registry, runs, parameters, paths, notes, stop: || false }.limited())
+        Ok(Self { scenario, registry, runs, parameters, paths, notes, straight, stop: || false }.limited())
     }
 
     /// The scenario.

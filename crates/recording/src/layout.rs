@@ -234,10 +234,15 @@ fn bare_unit(cell: &str) -> &str {
     cell.trim().trim_start_matches(['[', '(', '{']).trim_end_matches([']', ')', '}']).trim()
 }
 
-/// Whether a row holds units: at least one, and nothing else that is not empty.
+/// Whether a row holds units: at least one, and nothing else that is not empty. A `1` is the unit of what has none beside more
+/// units than there are of it, though not of the first column: that is a time or a counter.
 fn is_units(row: &[String]) -> bool {
+    const OF_NONE: &str = "1";
     let texts: Vec<&str> = row.iter().map(|cell| bare_unit(cell)).filter(|unit| !unit.is_empty()).collect();
-    !texts.is_empty()
+    let (ones, texts): (Vec<&str>, Vec<&str>) = texts.into_iter().partition(|unit| *unit == OF_NONE);
+    let counts = row.first().is_some_and(|cell| bare_unit(cell) == OF_NONE);
+    !counts
+        && texts.len() > ones.len()
         && texts.iter().all(|unit| unit.parse::<f64>().is_err() && unit_in_words(unit).is_ok())
         && texts.iter().any(|unit| *unit != "-")
 }
@@ -279,6 +284,19 @@ mod tests {
         assert_eq!(found.header, ["Time", "Speed", "Mode"]);
         assert_eq!(found.units, ["s", "km/h", ""]);
         assert_eq!((found.header_line, found.skip), (4, 5));
+    }
+
+    #[test]
+    fn a_one_among_units_is_that_of_a_number_and_no_value() {
+        let found = layout("time,speed,force,coasting\ns,m/s,N,1\n0,3,20,1\n").unwrap();
+        assert_eq!(
+            (found.units.as_slice(), found.skip),
+            (["s", "m/s", "N", "1"].map(String::from).as_slice(), 2)
+        );
+        // A first row of a gear lever in neutral, or of a counter.
+        for rows in ["gear,coasting\nN,1\nN,1\n", "count,gear,mode\n1,N,A\n2,N,A\n"] {
+            assert!(layout(rows).unwrap().units.is_empty(), "{rows}");
+        }
     }
 
     #[test]

@@ -75,6 +75,24 @@ fn passes_of_one_path_are_counted() {
     assert!(error_m_s < 1e-3, "{error_m_s}: {told}");
 }
 
+/// A scenario that says no heading knows how far a run came, and not where: 200 m due north of a place of its own.
+#[test]
+fn where_a_run_was_is_not_held_against_a_straight_path() {
+    let place = Place::new();
+    scenario(&place, "");
+    place.write("recording.ron", r#"(about: "north", runs: [(id: "r1", file: "r1.csv")])"#);
+    let head = "time_s,position_m,speed_m_s,tractive_force_n,east_m,north_m";
+    let log = log(head, 20, |time_s| {
+        vec![10.0 * time_s, 10.0, 0.02 * 1000.0 * 9.806_65, 500.0, 700.0 + 10.0 * time_s]
+    });
+    place.write("r1.csv", &log);
+    compared(&place);
+    let document = place.json("out/comparison.json");
+    let judged: Vec<&str> =
+        document["channels"].as_array().unwrap().iter().filter_map(|one| one["channel"].as_str()).collect();
+    assert!(judged.contains(&"position_m") && !judged.contains(&"east_m"), "{judged:?}");
+}
+
 /// A turn of 0.2 rad/s at 10 m/s: a side force of 2000 N drags by 2000²/100 000 = 40 N.
 #[test]
 fn curvature_is_made_of_the_rate_of_turn() {
@@ -91,6 +109,33 @@ fn curvature_is_made_of_the_rate_of_turn() {
     assert!(told.contains("it is made of `yaw_rate_rad_s`"), "{told}");
     // Without it 40 N would speed 1000 kg up by 0.8 m/s in 20 s.
     assert!(error_m_s < 0.03, "{error_m_s}: {told}");
+}
+
+/// A lane of 300 m due north whose second half climbs by 2 %: the second run begins there, as its latitude says.
+#[test]
+fn runs_of_one_path_lie_where_they_were() {
+    /// Of a radius of 6 371 km [m].
+    const OF_A_DEGREE_M: f64 = 111_194.93;
+    let place = Place::new();
+    scenario(&place, "grade(positions_m: [0.0, 149.9, 150.1, 300.0], grades: [0.0, 0.0, 0.02, 0.02])");
+    let runs = r#"(
+    about: "a lane",
+    runs: [(id: "r1", file: "r1.csv", path: "lane"), (id: "r2", file: "r2.csv", path: "lane")],
+)"#;
+    place.write("recording.ron", runs);
+    for (name, from_m, long_s) in [("r1.csv", 0.0, 30), ("r2.csv", 150.0, 15)] {
+        let head = "time_s,speed_m_s,tractive_force_n,latitude_deg,longitude_deg";
+        let log = log(head, long_s, |time_s| {
+            let at_m = from_m + 10.0 * time_s;
+            let climb_n = if at_m > 150.0 { 0.02 * 1000.0 * 9.806_65 } else { 0.0 };
+            vec![10.0, 0.02 * 1000.0 * 9.806_65 + climb_n, at_m / OF_A_DEGREE_M, 11.0]
+        });
+        place.write(name, &log);
+    }
+    let (error_m_s, told) = compared(&place);
+    assert!(told.contains("In r1, r2 the distance along the path is made of where they were"), "{told}");
+    // Laid from its begin, the second would be 0.2 m/s² too fast.
+    assert!(error_m_s < 0.2, "{error_m_s}: {told}");
 }
 
 /// All that is told without being asked, and the speed of the engine beside it.

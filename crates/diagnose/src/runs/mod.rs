@@ -1,7 +1,6 @@
 //! What a recording holds, as runs that the model can be driven along: their motion, place and force.
 
 pub(crate) mod begun;
-pub(crate) mod laid;
 pub(crate) mod late_power;
 pub(crate) mod leaps;
 pub(crate) mod overrun;

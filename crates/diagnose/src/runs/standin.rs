@@ -6,12 +6,12 @@
 
 use crate::DiagnoseError;
 use crate::causes::sensors::with_channel;
-use crate::runs::laid::lay;
 use crate::runs::leaps::{leaps, without};
 use crate::runs::sparse::{self, Sparse, filled};
 use crate::runs::thinned::thinned;
 use crate::runs::way::{Scale, scale};
 use headland_calibrate::curved::{self, with_curvature};
+use headland_calibrate::laid;
 use headland_calibrate::study::StudyError;
 use headland_recording::{RecordedRun, Recording};
 use headland_trace::{Origin, Trace};
@@ -125,10 +125,7 @@ pub fn prepared(recording: &Recording, wrong: bool, straight: bool) -> Result<Pr
         &leapt,
         "speed leaps to where no vehicle can get and back; nothing is told by it there",
     ));
-    own.notes.extend(told(
-        &lay(&mut own.recording.runs)?,
-        "the distance along the path is made of where they were",
-    ));
+    own.notes.extend(told(&laid::lay(&mut own.recording.runs)?, laid::SAID));
     own.notes
         .extend(told(&whole, "no speed over ground was recorded; the speed of the wheels stands in for it"));
     own.notes.extend(told(

@@ -5,7 +5,7 @@
 //! so that a bend is no shorter way: ln |dw/dd| = −k + τ a/v − b/v, where k is the scale of the speed, τ how late it comes and
 //! b its offset. A speed that comes late is too fast wherever the vehicle slows down, which is no scale.
 
-use crate::runs::laid::{first_place, places};
+use headland_calibrate::laid::{first_place, places};
 use headland_calibrate::statistics::median;
 use headland_recording::RecordedRun;
 use headland_trace::Trace;

@@ -4,10 +4,9 @@
 //! point, which is noisy, or what they drove themselves, which drifts; here it is the second, moved by the first averaged.
 //! Where another begins before it or goes on behind it, the path goes on with that one; distances before the begin are below 0.
 
-use crate::DiagnoseError;
 use headland_recording::RecordedRun;
 use headland_sim::{local_fit, travelled};
-use headland_trace::{Origin, Trace};
+use headland_trace::{Origin, Trace, TraceError};
 
 /// Mean radius of the earth [m]. Source: IUGG, R₁ of GRS 80 (Moritz 2000).
 const EARTH_RADIUS_M: f64 = 6_371_008.8;
@@ -24,12 +23,15 @@ const BESIDE_M: f64 = 40.0;
 /// East and north of every sample [m].
 type Track = Vec<[f64; 2]>;
 
+/// What is said of runs that were laid.
+pub const SAID: &str = "the distance along the path is made of where they were";
+
 /// Gives runs without a position the distance along the path that they share, where all of its runs know where they were.
 /// The runs that were laid.
 ///
 /// # Errors
-/// Where a trace cannot be put together.
-pub fn lay(runs: &mut [RecordedRun]) -> Result<Vec<String>, DiagnoseError> {
+/// [`TraceError`]: a bug.
+pub fn lay(runs: &mut [RecordedRun]) -> Result<Vec<String>, TraceError> {
     let mut laid = Vec::new();
     let mut paths: Vec<String> = runs.iter().filter_map(|run| run.path.clone()).collect();
     paths.sort_unstable();

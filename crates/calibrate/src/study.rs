@@ -7,7 +7,7 @@ use crate::statistics::{mean, median};
 use headland_plugin::Registry;
 use headland_recording::{RecordedRun, Recording};
 use headland_scenario::{Scenario, ScenarioError};
-use headland_sim::{Drive, Inputs, Model, Outcome, Replay, ReplayError, replay, travelled};
+use headland_sim::{Drive, Inputs, Model, Outcome, Replay, ReplayError, chainage_from_m, replay, travelled};
 use headland_trace::{Origin, Trace, TraceError};
 use rayon::prelude::*;
 
@@ -538,11 +538,9 @@ fn measured(
         .map(|name| (*name).to_owned())
         .collect();
     let signals = predicted(signals, model, &trace);
-    let reversed_from_m = run.reversed.then(|| match trace.get("position_m") {
-        // Positions that fall are those of the path itself; those that grow begin at its end.
-        Some([first, .., last]) if last < first => *first,
-        _ => length_m,
-    });
+    // Positions that fall are those of the path itself; those that grow begin at its end.
+    let reversed_from_m =
+        run.reversed.then(|| trace.get("position_m").and_then(chainage_from_m).unwrap_or(length_m));
     notes.extend(beyond_the_terrain(model.terrain.extent_m(), &trace, reversed_from_m));
     let how = Replay {
         drive,
@@ -567,7 +565,7 @@ fn measured(
 pub fn places_m(trace: &Trace, speeds_m_s: &[f64], reversed_from_m: Option<f64>) -> Vec<f64> {
     let back = |far: &[f64], from_m: f64| far.iter().map(|far| from_m - far).collect();
     match (trace.get("position_m"), reversed_from_m) {
-        (Some(position), Some(from_m)) if position.last() >= position.first() => back(position, from_m),
+        (Some(position), Some(from_m)) if chainage_from_m(position).is_none() => back(position, from_m),
         (Some(position), _) => position.to_vec(),
         (None, Some(from_m)) => back(&travelled(trace.time_s(), speeds_m_s), from_m),
         (None, None) => travelled(trace.time_s(), speeds_m_s),

@@ -340,6 +340,12 @@ impl<'a> Case<'a> {
         wanted(self.options, id)
     }
 
+    /// Whether a function with one value throughout would be another cause, which nobody wants.
+    pub fn is_left_out_as(&self, function: &Cause) -> bool {
+        let other = function.even().map(|(id, _)| id).filter(|id| *id != function.id);
+        other.is_some_and(|other| self.options.without.iter().any(|id| id == other))
+    }
+
     /// The scale of the speed that was taken out of the recordings because the way says that it is wrong.
     pub fn faulty_scale(&self) -> Option<Scale> {
         self.scale.filter(|scale| self.wanted(SPEED_SCALE) && scale.is_wrong())

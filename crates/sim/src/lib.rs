@@ -50,7 +50,7 @@ pub use model::{Model, Named, Resistance, Vehicle};
 pub use plan::{Cycle, Driven, EngineSpeed, Guard, Phase, Pi, Setting, Start, Until, speed_not_kept};
 pub use replay::{Drive, Inputs, Replay, ReplayError, replay, replay_channels};
 pub use simulation::{Simulation, simulate};
-pub use slope::{LocalFit, local_fit, travelled};
+pub use slope::{LocalFit, chainage_from_m, local_fit, travelled};
 
 use headland_trace::Trace;
 use serde::Serialize;

@@ -8,7 +8,7 @@ use crate::balance::{Command, Followed, Given};
 use crate::ledger::Ledger;
 use crate::recorder::Recorder;
 use crate::shaking::shaking_m2_s4;
-use crate::slope::{LocalFit, local_fit, travelled};
+use crate::slope::{LocalFit, chainage_from_m, local_fit, travelled};
 use crate::step::{Machine, Moment};
 use crate::{End, Model, Outcome};
 use headland_trace::{Origin, Trace, TraceError};
@@ -250,7 +250,7 @@ impl<'a> Tape<'a> {
         let speed = recorded.require("speed_m_s").map_err(ReplayError::Missing)?;
         let motion = local_fit(time_s, speed, how.smoothing_s);
         let position_m = match (recorded.get("position_m"), how.reversed_from_m) {
-            (Some(position), Some(from_m)) if position.last() < position.first() => {
+            (Some(position), Some(from_m)) if chainage_from_m(position).is_some() => {
                 position.iter().map(|position| from_m - position).collect()
             }
             (Some(position), _) => position.to_vec(),

@@ -35,6 +35,14 @@ pub fn travelled(time_s: &[f64], speed_m_s: &[f64]) -> Vec<f64> {
     positions
 }
 
+/// Where a run begins whose recorded places [m] fall along it, as a chainage does on the way back; none where they grow. The first and
+/// the last that are known decide: a log may have a place in one row of several.
+pub fn chainage_from_m(position_m: &[f64]) -> Option<f64> {
+    let mut known = position_m.iter().copied().filter(|place| place.is_finite());
+    let first = known.next()?;
+    known.next_back().filter(|last| *last < first).map(|_| first)
+}
+
 /// Fits a parabola to the samples within `half_width_s` of each sample, by least squares.
 ///
 /// The base may be uneven. With fewer than four samples in reach a straight line is fitted; a lone one has no slope,
@@ -99,6 +107,14 @@ fn parabola(time_s: &[f64], values: &[f64], at: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_chainage_falls_whatever_row_ends_the_log() {
+        const NONE: f64 = f64::NAN;
+        assert_eq!(chainage_from_m(&[NONE, 900.0, NONE, 400.0, NONE]), Some(900.0));
+        assert_eq!(chainage_from_m(&[0.0, NONE, 400.0, NONE]), None);
+        assert_eq!(chainage_from_m(&[NONE, 3.0]), None);
+    }
 
     #[test]
     fn a_parabola_on_an_uneven_base_is_met_exactly() {

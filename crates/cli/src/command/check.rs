@@ -96,7 +96,7 @@ fn told_together(one: &Together) -> String {
 fn listed(runs: &[String]) -> String {
     match runs {
         [] => "no run".to_owned(),
-        [one] => format!("run {one}"),
+        [one] => format!("one run ({one})"),
         many => format!("{} runs ({})", many.len(), many.join(", ")),
     }
 }

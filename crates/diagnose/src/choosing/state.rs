@@ -13,6 +13,7 @@ use crate::causes::trial::{Pool, Trial};
 use crate::choosing::rivals::twin;
 use crate::look::MANY_ROWS;
 use crate::runs::recorded::share_paths;
+use headland_calibrate::statistics::mean;
 use nalgebra::DVector;
 
 /// A cause in a set, and how a function of it is spread.
@@ -176,7 +177,8 @@ impl<'a> State<'a> {
     }
 
     /// Whether the functions of a set stay within what their parameters can be, by two standard deviations and a tenth of
-    /// how far they reach, but for one knot in twenty.
+    /// how far they reach, but for one knot in twenty, and none is what nobody wants by another name: a load that does not change is a mass,
+    /// and slopes that are the same everywhere are one.
     pub fn functions_possible(&self, stand: &Stand) -> bool {
         const SIGMAS: f64 = 2.0;
         const SLACK: f64 = 0.1;
@@ -191,6 +193,10 @@ impl<'a> State<'a> {
             let all = || function.values.iter().flat_map(|(values, sds)| values.iter().zip(sds.iter()));
             let reach = all().fold(f64::NEG_INFINITY, |most, (value, _)| most.max(*value))
                 - all().fold(f64::INFINITY, |least, (value, _)| least.min(*value));
+            let levels = all().map(|(value, _)| even + value);
+            if self.case.is_left_out_as(self.cause(&part.trial)) && is_level(levels) {
+                return false;
+            }
             let by_run = self.cause(&part.trial).by_run;
             let widest = all().map(|(_, sd)| *sd).fold(0.0, f64::max);
             if by_run && !term.has_room_for(reach, SIGMAS * widest) {
@@ -466,5 +472,28 @@ impl Stand {
             }
         }
         rows
+    }
+}
+
+/// Whether values hardly differ.
+fn is_level(values: impl Iterator<Item = f64>) -> bool {
+    /// Their scatter, of what they are on average.
+    const HARDLY: f64 = 0.2;
+    let values: Vec<f64> = values.collect();
+    let level = mean(&values);
+    let squares: Vec<f64> = values.iter().map(|value| (value - level).powi(2)).collect();
+    mean(&squares).sqrt() < HARDLY * level.abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_level;
+
+    /// A load of a tonne that lacked to ten kilograms was told in the place of a mass that nobody wanted.
+    #[test]
+    fn what_hardly_changes_is_level_and_what_comes_and_goes_is_not() {
+        let of = |change_kg: f64| (0..40).map(move |at| -1060.0 + change_kg * f64::from(at % 2));
+        assert!(is_level(of(20.0)) && !is_level(of(1060.0)));
+        assert!(!is_level((0..40).map(|at| 50.0 * f64::from(at - 20))));
     }
 }

@@ -24,6 +24,15 @@ impl State<'_> {
         found.stand.parts.iter().filter(free).map(|part| self.cause(&part.trial).id).collect()
     }
 
+    /// Whether a set has a law that grows with the clock throughout a run, whatever it names.
+    pub fn holds_a_course(&self, stand: &Stand) -> bool {
+        let longest_s = self.case.longest_s();
+        let law = |part: &Part| {
+            self.cause(&part.trial).law.as_ref().is_some_and(|law| law.never_settles(longest_s))
+        };
+        stand.parts.iter().any(law)
+    }
+
     /// The likeliest of some sets with a law and without such courses, where it foretells runs as they never can.
     pub fn that_foretells(&self, found: &Found, sets: Vec<Stand>, kind: Kind) -> Option<Stand> {
         let courses = self.courses(found, kind);

@@ -270,6 +270,8 @@ fn beside(
             && !state.draws_twice(stand)
             && !state.are_levels(stand, sought.kind)
             && state.keeps_to_priors(stand, &found.stand)
+            // Beside a course of time that is known by its name none by another is said.
+            && (courses.is_empty() || !state.holds_a_course(stand))
     };
     for parts in candidates {
         let Some(stand) = state.settle(&parts, &found.stand.noises) else { continue };

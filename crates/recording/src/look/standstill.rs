@@ -8,6 +8,8 @@ use headland_units::{Dimension, parse_unit, unit_of_name};
 const STANDS_M_S: f64 = 0.3;
 /// How long it has to stand for its readings to count (s).
 const LEAST_S: f64 = 1.0;
+/// So long before a vehicle moves off, and after it stopped, something drives or holds it already (s).
+const ABOUT_TO_S: f64 = 1.0;
 /// The reading at standstill that is worth telling, as a share of the largest reading.
 const SHARE: f64 = 0.02;
 
@@ -66,7 +68,19 @@ fn reads_zero_at_rest(name: &str) -> bool {
 /// The reading at standstill and the largest reading, both in the middle of what was read.
 fn at_rest(run: &RecordedRun, name: &str) -> Option<(f64, f64)> {
     let (values, speed, time) = (run.trace.get(name)?, speed(&run.trace)?, run.trace.time_s());
-    let standing = |row: usize| speed[row].abs() < STANDS_M_S;
+    let moves = |row: usize| speed[row].abs() >= STANDS_M_S;
+    let mut still: Vec<bool> = (0..time.len()).map(|row| speed[row].abs() < STANDS_M_S).collect();
+    let mut moved_s = f64::NEG_INFINITY;
+    for row in 0..time.len() {
+        moved_s = if moves(row) { time[row] } else { moved_s };
+        still[row] &= time[row] - moved_s >= ABOUT_TO_S;
+    }
+    let mut moves_s = f64::INFINITY;
+    for row in (0..time.len()).rev() {
+        moves_s = if moves(row) { time[row] } else { moves_s };
+        still[row] &= moves_s - time[row] >= ABOUT_TO_S;
+    }
+    let standing = |row: usize| still[row];
     let stood_s: f64 = (1..time.len())
         .filter(|row| standing(*row) && standing(row - 1))
         .map(|row| time[row] - time[row - 1])
@@ -113,6 +127,25 @@ mod tests {
         offsets(&[run("a", -170.0), run("b", 30.0)], &mut notices);
         assert_eq!(notices.len(), 1);
         assert!(notices[0].text.contains("reads -170 to 30") && notices[0].text.contains("differently"));
+    }
+
+    /// A tractor that pulls away: its force is there for most of a second before it moves.
+    #[test]
+    fn a_force_that_moves_a_vehicle_off_is_no_offset() {
+        let mut off = run("a", 0.0);
+        let force = (0..200).map(|row| if row < 42 { 0.0 } else { 800.0 }).collect();
+        off.trace.remove("wheel_force_n");
+        off.trace.push("wheel_force_n", force, Origin::Measured).unwrap();
+        // And one that is logged from the moment on at which somebody drives.
+        let mut begun = run("b", 0.0);
+        begun.trace.remove("speed_m_s");
+        let speed = (0..200).map(|row| 0.02 * f64::from(row)).collect();
+        begun.trace.push("speed_m_s", speed, Origin::Measured).unwrap();
+        begun.trace.remove("wheel_force_n");
+        begun.trace.push("wheel_force_n", vec![800.0; 200], Origin::Measured).unwrap();
+        let mut notices = Vec::new();
+        offsets(&[off, begun], &mut notices);
+        assert!(notices.is_empty(), "{notices:?}");
     }
 
     #[test]

@@ -83,6 +83,13 @@ impl LawText {
         self.text.split(|letter| !word(letter)).any(|name| name == WAY)
     }
 
+    /// Whether it follows what it names later than half of a run that lasts so long [s]: what grows and never settles is a course of
+    /// time, whatever it names.
+    pub fn never_settles(&self, lasts_s: f64) -> bool {
+        const HALF: f64 = 0.5;
+        self.constants.iter().any(|one| one.name.starts_with("lag") && one.value > HALF * lasts_s)
+    }
+
     /// Whether a vehicle that is a little elsewhere, or a little slower, may be led somewhere else altogether.
     pub fn leads_elsewhere(&self) -> bool {
         self.text.contains("latched(") || self.depends_on.contains(&PLACE)

@@ -169,11 +169,18 @@ impl Fit {
         self.held_out.as_ref().is_some_and(FitRuns::grows)
     }
 
-    /// Whether a speed is as near to the noise as what each run tells of itself can follow it; of other signals nobody knows.
+    /// Whether a signal is as near to the noise as what each run tells of itself can follow it, or hardly anything is left of the error: a force
+    /// that was measured with noise of its own moves a speed by more than the noise of that.
     pub(crate) fn is_followed(&self) -> bool {
-        /// So many times the noise.
+        /// This share of the error before.
+        const HARDLY: f64 = 0.05;
+        /// A speed by so many times the noise,
         const FOLLOWED: f64 = 3.0;
-        self.signal != "speed_m_s" || self.fitted.rmse_after < FOLLOWED * self.fitted.noise
+        /// and what is rougher than a speed by this many: motors, pumps and gears leave more in a power than sensors do.
+        const FOLLOWED_ELSE: f64 = 6.0;
+        let most = if self.signal == "speed_m_s" { FOLLOWED } else { FOLLOWED_ELSE };
+        let FitRuns { rmse_before, rmse_after, noise, .. } = self.fitted;
+        rmse_after < most * noise || rmse_after < HARDLY * rmse_before
     }
 }
 

@@ -4,7 +4,7 @@
 //! The statistics underneath know nothing of vehicles and serve any estimation: [`least_squares`] minimises,
 //! [`clusters`] pools runs and gives intervals that survive run-to-run variation, [`separable`] says what the
 //! data cannot tell apart, [`curved`] makes the curvature that nobody recorded, [`laid`] the
-//! distance along a path that several runs share, [`statistics`] holds quantiles and seeded draws.
+//! distance along a path that several runs share, [`sparse`] what lies between values that come less often than rows, [`statistics`] holds quantiles and seeded draws.
 
 pub mod clusters;
 pub mod coastdown;
@@ -14,5 +14,6 @@ pub mod fit;
 pub mod laid;
 pub mod least_squares;
 pub mod separable;
+pub mod sparse;
 pub mod statistics;
 pub mod study;

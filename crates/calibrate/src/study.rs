@@ -3,6 +3,7 @@
 use crate::curved::{self, is_straight, with_curvature};
 use crate::fit::{Fit, Parameter, Residuals, fit};
 use crate::laid;
+use crate::sparse::{self, Sparse, filled};
 use crate::statistics::{mean, median};
 use headland_plugin::Registry;
 use headland_recording::{RecordedRun, Recording};
@@ -195,13 +196,15 @@ impl<'a> Study<'a> {
             notes.push(format!("In {} {}.", along.join(", "), laid::SAID));
         }
         let mut runs: Vec<Measured> = Vec::new();
+        let mut gaps: Vec<Sparse> = Vec::new();
         for (number, run) in recording.runs.iter().enumerate() {
             let length_m = path_length_m(&recording, run.path.as_deref());
-            let mut measured = measured(scenario, &model, run, length_m, &mut notes)?;
+            let mut measured = measured(scenario, &model, run, length_m, (&mut notes, &mut gaps))?;
             let same = |other: &&RecordedRun| run.path.is_some() && other.path == run.path;
             measured.how.passes_before = recording.runs[..number].iter().filter(same).count();
             runs.push(measured);
         }
+        notes.extend(sparse::told(&gaps));
         let mut parameters = Vec::new();
         let mut paths = Vec::new();
         for free in &scenario.free {
@@ -493,13 +496,19 @@ fn measured(
     model: &Model,
     run: &RecordedRun,
     length_m: f64,
-    notes: &mut Vec<String>,
+    (notes, gaps): (&mut Vec<String>, &mut Vec<Sparse>),
 ) -> Result<Measured, StudyError> {
     refuse(run)?;
-    let mut trace = run.trace.clone();
-    derive(&mut trace, Origin::Measured)?;
     let settings = &scenario.replay;
-    let drive = settings.drive.unwrap_or_else(|| drive_of(&trace, model));
+    let around = filled(&run.trace, |name| sparse::AROUND.contains(&name))?;
+    let drive = settings.drive.unwrap_or_else(|| drive_of(&around.trace, model));
+    // What is compared stays as it came.
+    let asked = settings.inputs.iter().flat_map(|asked| &asked.listed).flat_map(|input| input.channels());
+    let driving: Vec<&str> = driving(drive).iter().chain(asked).copied().collect();
+    let driven = filled(&around.trace, |name| driving.contains(&name))?;
+    gaps.extend(around.sparse.into_iter().chain(driven.sparse));
+    let mut trace = driven.trace;
+    derive(&mut trace, Origin::Measured)?;
     if drive == Drive::Coast && trace.get(COASTING).is_none() {
         let why =
             if settings.drive.is_some() { "the scenario says so" } else { "its driveline never drives" };
@@ -557,7 +566,17 @@ fn measured(
         Measured { id: run.id.clone(), trace, how, signals, held_out: run.held_out, known, compared };
     let followed = measured.how.followed(&measured.trace);
     measured.compared.iter_mut().zip(followed).for_each(|(compared, followed)| *compared &= !followed);
+    measured.compared.iter_mut().zip(around.unknown).for_each(|(compared, unknown)| *compared &= !unknown);
     Ok(measured)
+}
+
+/// Channels of what drives a model so.
+fn driving(drive: Drive) -> &'static [&'static str] {
+    match drive {
+        Drive::Speed | Drive::Coast => &[],
+        Drive::Force => &["tractive_force_n"],
+        Drive::Torque => &["motor_torque_n_m", "engine_torque_n_m"],
+    }
 }
 
 /// Where a run is on its path, sample by sample [m]: as it was recorded, or as far as these speeds [m/s] bring it. Places that grow along

@@ -8,7 +8,6 @@ pub(crate) mod placed;
 pub(crate) mod places;
 pub(crate) mod recorded;
 pub(crate) mod said;
-pub(crate) mod sparse;
 pub(crate) mod split;
 pub(crate) mod standin;
 pub(crate) mod thinned;

@@ -7,11 +7,11 @@
 use crate::DiagnoseError;
 use crate::causes::sensors::with_channel;
 use crate::runs::leaps::{leaps, without};
-use crate::runs::sparse::{self, Sparse, filled};
 use crate::runs::thinned::thinned;
 use crate::runs::way::{Scale, scale};
 use headland_calibrate::curved::{self, with_curvature};
 use headland_calibrate::laid;
+use headland_calibrate::sparse::{self, Sparse, filled};
 use headland_calibrate::study::StudyError;
 use headland_recording::{RecordedRun, Recording};
 use headland_trace::{Origin, Trace};
@@ -74,7 +74,7 @@ pub fn prepared(recording: &Recording, wrong: bool, straight: bool) -> Result<Pr
             rare.push(run.id.clone());
         }
         let (trace, own) = settled(thin.as_ref().unwrap_or(&run.trace))?;
-        let made = filled(&trace)?;
+        let made = filled(&trace, |_| true)?;
         sparse.extend(made.sparse);
         unknown.push(made.unknown);
         leapt.push(own);

@@ -6,7 +6,7 @@
 //! rows in which its speed is new. Channels that are faster are averaged there, with the hat between the rows beside.
 
 use crate::DiagnoseError;
-use crate::runs::sparse::SWITCHES;
+use headland_calibrate::sparse::SWITCHES;
 use headland_recording::renewals;
 use headland_trace::{Channel, Trace};
 

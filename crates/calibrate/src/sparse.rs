@@ -3,9 +3,8 @@
 //! Between two values such a channel is what lies between them, and that is said. So are short gaps in what changes slowly
 //! around the vehicle, without which no run could be driven.
 
-use crate::DiagnoseError;
 use headland_recording::{renewals, spacing};
-use headland_trace::{Origin, Trace};
+use headland_trace::{Origin, Trace, TraceError};
 use std::collections::BTreeMap;
 
 /// A channel of a run that was filled.
@@ -21,7 +20,7 @@ pub const SWITCHES: [&str; 4] = ["coasting", "brake", "heading_rad", "wind_direc
 /// Channels whose steps are told by themselves: a charge is counted in them, and a run has the rows in which its speed is new.
 const STEPS: [&str; 2] = ["speed_m_s", "state_of_charge"];
 /// What surrounds the vehicle, or is done with it, and changes slowly: a run is driven by it.
-const AROUND: [&str; 15] = [
+pub const AROUND: [&str; 15] = [
     "curvature_per_m",
     "air_temperature_c",
     "oil_temperature_c",
@@ -52,15 +51,19 @@ pub struct Filled {
     pub unknown: Vec<bool>,
 }
 
-/// A run whose sparse channels hold a value in every row between their first and their last one.
+/// A run whose sparse channels, those of them that are wanted, hold a value in every row between their first and their last one.
 ///
 /// # Errors
-/// Where a trace cannot be put together.
-pub fn filled(trace: &Trace) -> Result<Filled, DiagnoseError> {
+/// [`TraceError`]: a bug.
+pub fn filled(trace: &Trace, wanted: impl Fn(&str) -> bool) -> Result<Filled, TraceError> {
     let mut found = Vec::new();
     let mut unknown = vec![false; trace.len()];
     let mut made = Trace::new(trace.time_s().to_vec())?;
     for channel in trace.channels() {
+        if !wanted(&channel.name) {
+            made.push(channel.name.clone(), channel.values.clone(), channel.origin)?;
+            continue;
+        }
         let known: Vec<usize> =
             (0..channel.values.len()).filter(|row| channel.values[*row].is_finite()).collect();
         let every = spacing(&known);
@@ -169,7 +172,7 @@ mod tests {
     #[test]
     fn every_second_value_is_filled_with_what_lies_between_and_told() {
         let Filled { trace: made, sparse, .. } =
-            filled(&with(|row| if row.is_multiple_of(2) { row as f64 } else { f64::NAN })).unwrap();
+            filled(&with(|row| if row.is_multiple_of(2) { row as f64 } else { f64::NAN }), |_| true).unwrap();
         let values = made.get("tractive_force_n").unwrap();
         assert!((0..99).all(|row| (values[row] - row as f64).abs() < 1e-9) && values[99] == 98.0);
         assert_eq!(sparse, [Sparse { channel: "tractive_force_n".to_owned(), every: Some(2) }]);
@@ -180,23 +183,23 @@ mod tests {
     #[test]
     fn a_value_that_is_repeated_until_the_next_one_comes_is_no_late_one() {
         let law = |row: usize| 50.0 * row as f64;
-        let Filled { trace: made, sparse, .. } = filled(&with(|row| law(row - row % 3))).unwrap();
+        let Filled { trace: made, sparse, .. } = filled(&with(|row| law(row - row % 3)), |_| true).unwrap();
         let values = made.get("tractive_force_n").unwrap();
         assert!((0..97).all(|row| (values[row] - law(row)).abs() < 1e-9), "{values:?}");
         assert_eq!(sparse, [Sparse { channel: "tractive_force_n".to_owned(), every: Some(3) }]);
         // A force that changes when it likes has no rate.
-        let Filled { sparse, .. } = filled(&with(|row| (row as f64).sqrt().floor())).unwrap();
+        let Filled { sparse, .. } = filled(&with(|row| (row as f64).sqrt().floor()), |_| true).unwrap();
         assert!(sparse.is_empty());
     }
 
     #[test]
     fn a_gap_stays_a_gap() {
         let gap = |row: usize| if (40..60).contains(&row) { f64::NAN } else { 1.0 };
-        let Filled { trace: made, sparse, .. } = filled(&with(gap)).unwrap();
+        let Filled { trace: made, sparse, .. } = filled(&with(gap), |_| true).unwrap();
         assert!(sparse.is_empty() && made.get("tractive_force_n").unwrap()[50].is_nan());
         let thin =
             |row: usize| if row.is_multiple_of(2) && !(40..60).contains(&row) { 1.0 } else { f64::NAN };
-        let Filled { trace: made, sparse, .. } = filled(&with(thin)).unwrap();
+        let Filled { trace: made, sparse, .. } = filled(&with(thin), |_| true).unwrap();
         let values = made.get("tractive_force_n").unwrap();
         assert!(sparse.len() == 1 && values[50].is_nan() && values[31] == 1.0);
     }
@@ -207,7 +210,7 @@ mod tests {
         let gap = |row: i32| (20..30).contains(&row) || (40..80).contains(&row);
         let grade = (0..100).map(|row| if gap(row) { f64::NAN } else { f64::from(row) }).collect();
         trace.push("grade", grade, Origin::Measured).unwrap();
-        let filled = filled(&trace).unwrap();
+        let filled = filled(&trace, |_| true).unwrap();
         assert!((0..100).all(|row| (filled.trace.get("grade").unwrap()[row] - row as f64).abs() < 1e-9));
         assert!((0..100).all(|row| filled.unknown[row] == (40..80).contains(&row)));
         assert!(told(&filled.sparse)[0].contains("`grade` lacks values in one run"));

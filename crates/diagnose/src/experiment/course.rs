@@ -89,6 +89,13 @@ impl Without {
     }
 }
 
+impl Course {
+    /// Whether anything acts otherwise than in the run that it is like: a vehicle that rolls free moves otherwise then.
+    pub fn alters(&self) -> bool {
+        self.opposite || self.ballast_kg != 0.0 || self.without != Without::Nothing
+    }
+}
+
 /// Ballast as a share of the mass: what front weights and a filled tank come to.
 const BALLAST: f64 = 0.15;
 /// A coast-down from this many times the highest recorded speed.

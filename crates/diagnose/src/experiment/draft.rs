@@ -47,13 +47,15 @@ fn shortened(drive: &Recorded) -> Recorded {
     drive
 }
 
-/// The run as a course wants it; none where it would be over before it began. The force is still unknown.
+/// The run as a course wants it, of which the model is what acts there; none where it would be over before it began. The force is still
+/// unknown.
 pub fn drafted(
     case: &Case,
     base: &Recorded,
     course: &Course,
     model: &Model,
 ) -> Result<Option<Recorded>, DiagnoseError> {
+    let course = &rolling(base, course);
     let ground = Ground::of(base);
     let Some(known) = known(case, base, course.ballast_kg) else { return Ok(None) };
     let Some((time_s, speed, source)) = motion(base, course, model, &ground)? else { return Ok(None) };
@@ -85,6 +87,8 @@ pub fn drafted(
         let at = |index: usize| match (*name, &source) {
             ("wind_speed_m_s", _) if course.without == Without::Wind => 0.0,
             ("grade" | "roll_rad", _) if course.without == Without::Ground => 0.0,
+            // Who drives the other way drives throughout: what rolled free would have moved otherwise.
+            ("coasting", Some(_)) if course.opposite => 0.0,
             ("coasting", None) => f64::from(u8::from(matches!(course.motion, Motion::Coast { .. }))),
             ("brake", None) => 0.0,
             (_, Some(source)) if along || !by_place => values[source[index]],
@@ -139,8 +143,19 @@ pub fn drafted(
     }))
 }
 
+/// The course as a vehicle takes it that rolls free throughout: whatever acts otherwise moves it otherwise, as nothing makes up for it.
+fn rolling(base: &Recorded, course: &Course) -> Course {
+    let free = base.measured.how.drive == Drive::Coast;
+    let first = base.motion.value.iter().copied().find(|speed| speed.is_finite());
+    let motion = match (&course.motion, first) {
+        (Motion::AsRecorded, Some(from_m_s)) if free && course.alters() => Motion::Coast { from_m_s },
+        (own, _) => own.clone(),
+    };
+    Course { motion, ..course.clone() }
+}
+
 /// What is known of a run with ballast; none where the scenario has no one mass.
-fn known(case: &Case, base: &Recorded, ballast_kg: f64) -> Option<Vec<(String, f64)>> {
+pub fn known(case: &Case, base: &Recorded, ballast_kg: f64) -> Option<Vec<(String, f64)>> {
     let mut known = base.measured.known.clone();
     if ballast_kg == 0.0 {
         return Some(known);
@@ -281,7 +296,7 @@ fn motion(
             let time_s = times(count);
             let mut trace = Trace::new(time_s.clone())?;
             trace.push("speed_m_s", vec![from_m_s; count], Origin::Measured)?;
-            let reversed = base.measured.how.reversed_from_m.is_some();
+            let reversed = base.measured.how.reversed_from_m.is_some() != course.opposite;
             let how = Replay {
                 drive: Drive::Coast,
                 also: Vec::<Inputs>::new(),

@@ -2,7 +2,7 @@
 
 use super::columns::nothing;
 use super::course::{Course, Without, courses};
-use super::draft::{base, drafted, forced};
+use super::draft::{base, drafted, forced, known as known_with};
 use super::signature::by_values;
 use crate::balances::balance::{Kind, System, block_s};
 use crate::balances::gram::Column;
@@ -13,7 +13,9 @@ use crate::causes::sensors::{PITCH, PITCH_RAD_S2_M, fault};
 use crate::causes::trial::{Pool, Trial, add_trial, for_run, nuisance};
 use crate::proof::refine::{Refined, said_with_all};
 use crate::{Case, DiagnoseError};
+use headland_calibrate::study::Measured;
 use headland_scenario::Scenario;
+use headland_sim::Model;
 use rayon::prelude::*;
 
 /// Proposed runs, ready to be asked what a cause would do in them.
@@ -48,19 +50,27 @@ impl<'a> Stage<'a> {
         };
         let effects: Vec<(Cause, Vec<f64>)> =
             refined.causes.iter().filter(known).map(|one| (one.cause.clone(), one.values())).collect();
-        let mut document = case.study.scenario().document().clone();
-        for (cause, values) in &effects {
-            document = document.with_effect(&for_run(&cause.written(values), cause, &base))?;
-        }
-        let scenario = Scenario::of(document, case.registry)?;
-        let model = case.study.model_of(&scenario, &base.measured, &values)?;
+        let modelled = |course: Option<&Course>| -> Result<Option<Model>, DiagnoseError> {
+            let mut document = case.study.scenario().document().clone();
+            let silent = |cause: &Cause| course.is_some_and(|course| course.without.silences(cause));
+            for (cause, values) in effects.iter().filter(|(cause, _)| !silent(cause)) {
+                document = document.with_effect(&for_run(&cause.written(values), cause, &base))?;
+            }
+            let scenario = Scenario::of(document, case.registry)?;
+            let ballast_kg = course.map_or(0.0, |course| course.ballast_kg);
+            let Some(known) = known_with(case, &base, ballast_kg) else { return Ok(None) };
+            let measured = Measured { known, ..base.measured.clone() };
+            Ok(Some(case.study.model_of(&scenario, &measured, &values)?))
+        };
+        let Some(plain) = modelled(None)? else { return Ok(None) };
         let pass = case.runs.iter().filter(|run| run.path == base.path).count();
         let tells = |course: &Course| {
             let silent = |cause: &usize| course.without.silences(&case.causes[*cause]);
             course.without == Without::Nothing || doubted.iter().any(silent)
         };
         let (mut kept, mut runs) = (Vec::new(), Vec::new());
-        for course in courses(case, &base, model.vehicle.mass_kg).into_iter().filter(tells) {
+        for course in courses(case, &base, plain.vehicle.mass_kg).into_iter().filter(tells) {
+            let Some(model) = modelled(Some(&course))? else { continue };
             if let Some(mut run) = drafted(case, &base, &course, &model)? {
                 run.measured.how.passes_before = pass;
                 runs.push(run);

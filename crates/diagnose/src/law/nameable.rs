@@ -9,6 +9,7 @@ use crate::runs::said::{Said, inputs};
 use headland_calibrate::statistics::median;
 use headland_sim::{Drive, Inputs, local_fit, travelled};
 use headland_symbolic::{Enters, Variable};
+use std::f64::consts::PI;
 
 /// A wave takes so many blocks of samples.
 const BLOCKS: f64 = 4.0;
@@ -62,11 +63,18 @@ fn wind_m_s(case: &Case, part: fn(f64) -> f64) -> Option<Vec<Vec<f64>>> {
     let of_run = |run: &Recorded| {
         let channel = |name: &str| run.measured.trace.get(name);
         let (speed, from) = (channel("wind_speed_m_s")?, channel("wind_direction_rad")?);
-        let heading = channel("heading_rad")?;
+        let heading = channel("heading_rad").map(<[f64]>::to_vec).or_else(|| headings_rad(case, run))?;
         let at = |index: usize| speed[index] * part(from[index] - heading[index]);
         Some((0..speed.len()).map(at).collect())
     };
     case.runs.iter().map(of_run).collect()
+}
+
+/// Where a run of which nobody recorded it was headed, sample by sample [rad]: along the terrain, or against it.
+fn headings_rad(case: &Case, run: &Recorded) -> Option<Vec<f64>> {
+    let model = case.study.model(&run.measured, &case.study.priors()).ok()?;
+    let turned = if run.measured.how.reversed_from_m.is_some() { PI } else { 0.0 };
+    Some(run.position_m.iter().map(|at_m| model.terrain.at(*at_m).heading_rad + turned).collect())
 }
 
 /// Sine of the roll, sample by sample, where the model is driven by it.

@@ -23,10 +23,15 @@ pub fn next(case: &Case, cured: &Cured, rivals: &[Candidate]) -> Option<String> 
     let function = cured.function()?;
     let (low, high, sd) = reach(case, function)?;
     let unit = cured.cause.terms.first().map_or("", |term| term.unit);
-    let amount = |value: f64| format!("{} {unit}", number(value));
+    let amount = |value: f64| match unit {
+        "1" => number(value),
+        unit => format!("{} {unit}", number(value)),
+    };
+    let by_run = cured.cause.by_run;
     let repeated = match repeated(case, function) {
+        _ if by_run => "each run has its own, so further runs tell nothing of these".to_owned(),
         Some((runs, least)) if least > ALIKE => format!(
-            "it takes the same course in the {runs} runs at hand (correlation {least:.2} and more), so it goes with the \
+            "its course has one shape in the {runs} runs at hand, of whatever size (correlation {least:.2} at least), so it goes with the \
              clock or with what is driven; drive another cycle to tell which"
         ),
         Some((runs, least)) => format!(
@@ -41,8 +46,9 @@ pub fn next(case: &Case, cured: &Cured, rivals: &[Candidate]) -> Option<String> 
     let rivals: Vec<(&'static str, f64)> = rivals.iter().map(|one| (one.id, one.behind)).collect();
     let more = more_of_the_same(case, &rivals).map_or(String::new(), |more| format!("; {more}"));
     Some(format!(
-        "{}: at each time it is known to ±{} between {} and {}, so a log of that resolution would prove it; {repeated}{more}",
+        "{}: {} it is known to ±{} between {} and {}, so a log of that resolution would prove it; {repeated}{more}",
         cured.cause.experiment,
+        if by_run { "in each run" } else { "at each time" },
         number(HALF_95 * sd),
         number(low),
         amount(high),

@@ -52,13 +52,18 @@ pub fn report(
     let fit = fit(case, system, Some(found), proof);
     let strain = refined.strain(case);
     let own = |cured: &Cured| cured.cause.class != Class::Artefact && cured.may_be_none();
-    let slight = refined.causes.iter().any(own) || over_time(refined) && !fit.is_followed();
+    let slight = refined.causes.iter().any(own);
+    let unfollowed = over_time(refined) && !fit.is_followed();
     let courses = refined.is_switched_alone();
     let verdict = if beside.withheld.is_some() {
         Verdict::CannotTell
     } else {
         let strain = strain.map_or(0.0, |(_, strain)| strain);
-        verdict(&findings, &fit, &Doubts { timed: timed(refined), courses, slight, strain })
+        verdict(
+            &findings,
+            &fit,
+            &Doubts { timed: timed(refined), courses, slight: slight || unfollowed, strain },
+        )
     };
     notes.extend(remarks(case, &found.unproven));
     notes.extend(beside.remark.clone());
@@ -86,6 +91,7 @@ pub fn report(
         before: &before,
         strain,
         slight,
+        unfollowed,
         withheld: beside.withheld.as_deref(),
         null_space: &refined.null_space,
         own: told_by_itself(case, refined, beside.events),

@@ -24,6 +24,8 @@ pub struct Told<'a> {
     pub strain: Option<(&'a Free, f64)>,
     /// Whether any cause may as well be none.
     pub slight: bool,
+    /// Whether all that was found are functions of time that do not follow the runs they were made of.
+    pub unfollowed: bool,
     /// Why nothing is claimed, where it is not.
     pub withheld: Option<&'a str>,
     /// What the data cannot separate.
@@ -76,6 +78,9 @@ pub fn answer(told: &Told) -> String {
             } else if told.slight {
                 "Something may be missing, and within its interval what was found may as well be none, so that nothing of \
                  it is certain."
+            } else if told.unfollowed {
+                "Something is missing, and what was found follows not even the runs that it was made of as near as such a cause can, so \
+                 that nothing of it is certain."
             } else {
                 "More is missing than was found, and what was found may stand in for it, so that nothing of it is certain."
             }

@@ -65,7 +65,10 @@ fn place(one: &Mismatch) -> String {
     match (one.over, one.everywhere) {
         (Over::Time, true) => format!("throughout {}", one.run.as_deref().unwrap_or("")),
         (Over::Time, false) => format!("in {} {}", one.run.as_deref().unwrap_or(""), between(" s")),
-        (Over::Position, true) => "along the whole path".to_owned(),
+        (Over::Position, true) => match (&one.path, &one.run) {
+            (None, Some(run)) => format!("along the whole way of {run}"),
+            _ => "along the whole path".to_owned(),
+        },
         (Over::Position, false) => match (&one.path, &one.run) {
             (Some(path), _) => format!("{} of the path {path}", between(" m")),
             (None, Some(run)) => format!("{} of {run}", between(" m")),

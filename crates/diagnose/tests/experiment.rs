@@ -22,6 +22,8 @@ struct Run {
     reversed: bool,
     /// How well the ground is known.
     coefficient_sd: f64,
+    /// Speed at the begin.
+    start_m_s: f64,
 }
 
 const MASS_KG: f64 = 13_000.0;
@@ -37,12 +39,13 @@ impl Run {
             mass_kg: MASS_KG,
             reversed: false,
             coefficient_sd: 0.003,
+            start_m_s: 0.0,
         }
     }
 }
 
 fn text(run: &Run) -> String {
-    let Run { cycle, effects, heading_deg, mass_kg, coefficient_sd, .. } = run;
+    let Run { cycle, effects, heading_deg, mass_kg, coefficient_sd, start_m_s, .. } = run;
     format!(
         r#"(
     about: "a tractor",
@@ -59,6 +62,7 @@ fn text(run: &Run) -> String {
         soil: LinearSpeedLaw(coefficient: 0.06, speed_scale_m_s: "100 km/h"),
     ),
     air: (density_kg_m3: 1.2),
+    start: (position_m: 0, speed_m_s: {start_m_s:?}),
     cycle: [{cycle}],
     effects: [{effects}],
     free: [
@@ -230,6 +234,36 @@ fn a_strong_wind_is_told_from_a_law_of_the_ground_by_the_other_direction() {
 #[test]
 fn a_gale_is_told_from_a_law_of_the_ground_by_the_other_direction() {
     a_wind_is_told_by_the_other_direction(12.0);
+}
+
+/// A vehicle that rolls free rolls otherwise uphill than downhill, and a run that was drafted as if it did not told everything.
+#[test]
+fn a_coast_down_that_was_rolled_both_ways_tells_no_more_once_it_is_rolled_again() {
+    let cycle = "Coast(until: SpeedBelow(speed_m_s: 1))";
+    let there = Run {
+        cycle: cycle.to_owned(),
+        coefficient_sd: 0.01,
+        start_m_s: 12.0,
+        ..Run::of("grade_constant(grade: 0.006), aerodynamic_drag(extra_area_m2: 4)")
+    };
+    let back = Run {
+        effects: there.effects.replace("0.006", "-0.006"),
+        heading_deg: 180.0,
+        reversed: true,
+        ..there.clone()
+    };
+    let runs = [there.clone(), back.clone(), there.clone(), back.clone(), there, back];
+    let found = found(&runs, &["grade_constant", "aerodynamic_drag", "mass"]);
+    let other =
+        |one: &&Experiment| one.run == "other_direction" && one.separates.iter().any(|id| id == "mass");
+    for one in found.diagnosis.experiments.iter().filter(other) {
+        assert!(one.expected_ln_odds < 7.0, "{}", one.sentence);
+    }
+    assert!(
+        found.diagnosis.experiments.iter().any(|one| one.run == "other_direction"),
+        "{}",
+        found.diagnosis.answer
+    );
 }
 
 #[test]

@@ -863,6 +863,19 @@ fn a_drag_by_the_pressure_of_the_tyres_is_found_as_an_equation() {
     is_told_by(&recording, &["tyre_pressure_pa"]);
 }
 
+/// A wind that was measured from the side of a lane to the north, of which the scenario alone knows where it leads: the vehicle crabs.
+#[test]
+fn a_drag_by_the_wind_from_the_side_is_found_where_the_terrain_knows_the_heading() {
+    let wind_m_s = |t: f64, run: usize| 5.0 + 3.0 * (t / 5.0 + 0.9 * run as f64).sin();
+    let mut recording = dragged("wind_speed_m_s", wind_m_s, |v, _, wind_m_s| 45.0 * v * wind_m_s);
+    for run in &mut recording.runs {
+        run.trace.remove("heading_rad");
+        let from_east = vec![std::f64::consts::FRAC_PI_2; run.trace.len()];
+        run.trace.push("wind_direction_rad", from_east, Origin::Measured).unwrap();
+    }
+    is_told_by(&recording, &["wind_speed_m_s"]);
+}
+
 /// A slope across the path rubs the flanks of the wheels, to either side alike, and the harder the more is driven by the power take-off.
 #[test]
 fn a_drag_by_the_roll_and_the_power_of_the_take_off_is_found_as_an_equation() {

@@ -193,4 +193,15 @@ mod tests {
         assert!(written(RESISTANCE).starts_with("expression(resistance: \"2.0 * (a_n)\""));
         assert!(written(FORCE).starts_with("expression(force: \"-2.0 * (a_n)\""));
     }
+
+    /// A tank that fills over a run of 520 s was told as what follows the square of the speed by a lag of 520 s.
+    #[test]
+    fn what_lags_by_most_of_a_run_never_settles() {
+        let lag = |name: &str, value: f64| {
+            let one =
+                headland_symbolic::Constant { name: name.to_owned(), value, sd: None, unit: "s".to_owned() };
+            LawText { constants: vec![one], ..LawText::constant(RESISTANCE, "a_n") }.never_settles(520.0)
+        };
+        assert!(lag("lag1_s", 500.0) && !lag("lag1_s", 200.0) && !lag("t1_s", 500.0));
+    }
 }

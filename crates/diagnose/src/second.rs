@@ -50,10 +50,14 @@ fn doubtful(findings: &[FindingReport], lack_of_fit: f64) -> Vec<Vec<String>> {
     let scales = SCALES.into_iter().filter(|scale| beside && found(scale).is_some_and(sought));
     // Both together follow what pushes a vehicle to and fro.
     let both = clock.filter(|_| found(LATE).is_some_and(sought)).map(|clock| vec![clock, LATE]);
+    // Along with what is late a law of places has another shape; what a delay does a clock may do in its place.
+    let late = (physics && lack_of_fit > MUCH_MORE && found(LATE).is_some_and(sought))
+        .then(|| vec![LATE, CLOCK])
+        .filter(|_| clock.is_none());
     let is_course = |load: &FindingReport| load.parameters.iter().any(|one| one.name.ends_with("_rms"));
     let load = (lack_of_fit > MUCH_MORE && found(LOAD).is_some_and(is_course)).then_some(LOAD);
     let known = map.into_iter().chain(clock).chain(scales).chain(load).map(|id| vec![id]);
-    let known: Vec<Vec<&str>> = known.chain(both).collect();
+    let known: Vec<Vec<&str>> = known.chain(both).chain(late).collect();
     // What a law may say as well, and leaves as much, hides the law that says it all.
     let by_law = |finding: &&FindingReport| {
         finding.kind == FindingKind::Physics
@@ -99,11 +103,11 @@ fn measure(one: &Diagnosis, other: &Diagnosis) -> fn(&FitRuns) -> f64 {
     }
 }
 
-/// Whether another opinion takes the place of the first, in which `id` was doubtful. A clock that runs apart is one thing, and so are a
-/// scale and a wind; what takes more than they do to say the same is a patch. And a map that goes by another name, which was named beside it, is
+/// Whether another opinion takes the place of the first, in which `id` was doubtful. A clock that runs apart is one thing, and so are what
+/// is late, a scale and a wind; what takes more than they do to say the same is a patch. And a map that goes by another name, which was named beside it, is
 /// the same.
 fn wins(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
-    let is_one = id == CLOCK || id == WIND || SCALES.contains(&id);
+    let is_one = [CLOCK, LATE, WIND].contains(&id) || SCALES.contains(&id);
     let patches = is_one && other.findings.len() > first.findings.len();
     let left = measure(other, first);
     let held_out = |one: &Diagnosis| Some((one.findings.len(), left(one.fit.held_out.as_ref()?)));
@@ -208,6 +212,14 @@ mod tests {
         assert!(doubtful(&oil(LAW), 3.0).is_empty() && doubtful(&oil("rolling_temperature"), 9.0).is_empty());
         // One look without a map is enough.
         assert_eq!(doubtful(&[finding(Physics, MAP, Some(LAW))], 9.0), [[MAP]]);
+    }
+
+    /// A lug of 12 kN was told as a late speed, a wave that fades with time and slopes.
+    #[test]
+    fn a_late_speed_beside_physics_that_leaves_much_is_doubted() {
+        let beside = || [finding(Artefact, LATE, None), finding(Physics, "grade", None)];
+        assert_eq!(doubtful(&beside(), 6.2), [[LATE, CLOCK]]);
+        assert!(doubtful(&beside(), 3.0).is_empty());
     }
 
     /// A load that was put on once is one number.

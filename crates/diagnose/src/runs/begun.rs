@@ -1,11 +1,11 @@
 //! Coast-downs whose recorded speed goes on for a moment as it was before: the sensor is late, or the runs begin before neutral.
 //! Left as it is, that moment would be a slope at the place where the runs begin, or a brake let go.
 //!
-//! v(t) = b − |a| max(0, d − t) − (1 + k) |a| t,   b and a of each run, d and k of all
+//! v(t) = b − (1 + k) |a| (max(0, d − t) + t),   b and a of each run, d and k of all
 //!
 //! b is the speed that the rest of a run goes back to, a what the nominal model makes of the resistances, k by how much it is
-//! wrong. d is looked for on a grid, b and k by least squares; it counts where the bend is what a delay makes, and no curve of the
-//! resistances. Source: change-point regression with a continuous line; Seber and Wild, *Nonlinear Regression* (1989), section 9.3.
+//! wrong. d is looked for on a grid, b and k by least squares; it counts where the speed goes on as it was, as a delay makes it, and
+//! does not merely bend, as a curve of the resistances or a push would. Source: change-point regression with a continuous line; Seber and Wild, *Nonlinear Regression* (1989), section 9.3.
 
 use crate::causes::sensors::{corrected, small_latency_s};
 use crate::proof::refine::HALF_95;
@@ -33,6 +33,8 @@ const FEWEST: usize = 3;
 const LEAST_GAIN: f64 = 20.0;
 /// The bend is as deep as a delay makes it, within this share.
 const AS_DEEP: f64 = 0.35;
+/// A delay says at least this share of what any bend there does.
+const MOSTLY: f64 = 0.9;
 /// An accelerometer that shows less than this share of the deceleration says that the vehicle was not yet in neutral.
 const IN_NEUTRAL: f64 = 0.5;
 
@@ -184,7 +186,9 @@ fn told(begins: &[Begin]) -> Option<Late> {
     let freedom = samples.checked_sub(begins.len() + 2).filter(|freedom| *freedom > 0)?;
     let variance = (best.squares / freedom as f64).max(f64::MIN_POSITIVE);
     let gain = 0.5 * (prompt.squares - best.squares) / variance;
-    if gain < LEAST_GAIN || (best.deep - 1.0).abs() > AS_DEEP {
+    let bent = all.iter().map(|one| one.1.bent).fold(f64::INFINITY, f64::min);
+    let of_a_delay = prompt.squares - best.squares > MOSTLY * (prompt.squares - bent);
+    if gain < LEAST_GAIN || (best.deep - 1.0).abs() > AS_DEEP || !of_a_delay {
         return None;
     }
     // Where the sum of squares has grown by its variance.
@@ -197,7 +201,9 @@ fn told(begins: &[Begin]) -> Option<Late> {
 struct Left {
     /// Sum of squares [m²/s²].
     squares: f64,
-    /// How deep the bend is, in units of what the delay makes.
+    /// The same where the bend may be of any depth [m²/s²].
+    bent: f64,
+    /// How deep the bend is, in units of what the delay makes: how much of the later slope is not there yet.
     deep: f64,
 }
 
@@ -209,15 +215,18 @@ fn left(begins: &[Begin], delay_s: f64) -> Option<Left> {
         let falls = centred(&begin.fallen_m_s.iter().map(|fallen| -fallen).collect::<Vec<_>>());
         let speed = centred(&begin.speed_m_s);
         for ((bend, fall), speed) in bends.iter().zip(&falls).zip(&speed) {
-            // The bend as deep as the delay makes it, and what the model is wrong by.
-            one.add(*fall, 0.0, speed - bend);
+            // The bend as deep as the delay makes it, whatever the model is wrong by.
+            one.add(fall + bend, 0.0, *speed);
             both.add(*fall, *bend, *speed);
         }
     }
     let wrong = one.cross[0] / one.products[(0, 0)];
     let squares = one.square - wrong * one.cross[0];
-    let deep = both.products.try_inverse().map_or(0.0, |inverse| (inverse * both.cross)[1]);
-    squares.is_finite().then_some(Left { squares, deep })
+    let (bent, deep) = both.products.try_inverse().map_or((squares, 0.0), |inverse| {
+        let slopes = inverse * both.cross;
+        (both.square - slopes.dot(&both.cross), slopes[1] / slopes[0])
+    });
+    squares.is_finite().then_some(Left { squares, bent, deep })
 }
 
 #[derive(Default)]
@@ -287,6 +296,18 @@ mod tests {
             let told = told(&begins(0.25, wrong)).unwrap();
             assert!((told.value - 0.25).abs() < 3.0 * told.sd && told.sd < 0.05, "{told:?}");
         }
+    }
+
+    /// A force with a clock of its own that pushes by less at first: the speed falls from the begin on, and faster later.
+    #[test]
+    fn a_speed_that_falls_from_the_begin_on_is_not_late_however_it_bends() {
+        let mut bent = begins(0.5, 1.0);
+        for begin in &mut bent {
+            for (time, speed) in begin.time_s.iter().zip(&mut begin.speed_m_s) {
+                *speed -= 0.9 * begin.slows_m_s2 * time;
+            }
+        }
+        assert_eq!(told(&bent), None);
     }
 
     #[test]

@@ -164,6 +164,13 @@ impl Cured {
         self.accepted.function.as_ref()
     }
 
+    /// Whether it is a consumer that would give back more than it takes, which none does: what wanders to and fro is no consumer.
+    pub fn gives_back(&self) -> bool {
+        let course = self.function().filter(|_| self.cause.id == "auxiliary_power" && self.cause.is_course());
+        course
+            .is_some_and(|course| gives_more(course.values.iter().flat_map(|(powers_w, _)| powers_w.iter())))
+    }
+
     /// The cause with its function as every run tells its own part of it.
     pub fn along(&self) -> Self {
         let mut own = self.clone();
@@ -638,10 +645,27 @@ pub fn said_with_all(
     case.said_of(runs, &scenario, values)
 }
 
+/// Whether powers below nought are more than those above, by their squares.
+fn gives_more<'a>(powers_w: impl Iterator<Item = &'a f64>) -> bool {
+    let (mut taken, mut given) = (0.0, 0.0);
+    for power_w in powers_w {
+        if *power_w > 0.0 { taken += power_w.powi(2) } else { given += power_w.powi(2) }
+    }
+    given > taken
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::causes::catalogue::{Around, causes};
+
+    /// Beside consumers that are known to a few hundred watts a heater of 2 kW may seem to give those back while it is off.
+    #[test]
+    fn a_heater_takes_more_than_it_seems_to_give_and_noise_does_not() {
+        let heater = [-400.0, -380.0, 2100.0, 1900.0, -420.0, -390.0];
+        assert!(!gives_more(heater.iter()));
+        assert!(gives_more([-4927.0, 2038.0, -360.0, 300.0].iter()));
+    }
 
     /// The grid of a cold engine reaches to 900 s, and runs of 40 s tell no more than 120 s.
     #[test]

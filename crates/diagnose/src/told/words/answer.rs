@@ -26,6 +26,8 @@ pub struct Told<'a> {
     pub slight: bool,
     /// Whether all that was found are functions of time that do not follow the runs they were made of.
     pub unfollowed: bool,
+    /// Whether a consumer that was found would give back more than it takes.
+    pub gives: bool,
     /// Why nothing is claimed, where it is not.
     pub withheld: Option<&'a str>,
     /// What the data cannot separate.
@@ -78,6 +80,9 @@ pub fn answer(told: &Told) -> String {
             } else if told.slight {
                 "Something may be missing, and within its interval what was found may as well be none, so that nothing of \
                  it is certain."
+            } else if told.gives {
+                "Something is missing, and the consumer that was found would give back more than it takes, which none does, so that nothing \
+                 of it is certain."
             } else if told.unfollowed {
                 "Something is missing, and what was found follows not even the runs that it was made of as near as such a cause can, so \
                  that nothing of it is certain."

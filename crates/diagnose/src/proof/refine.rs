@@ -164,11 +164,26 @@ impl Cured {
         self.accepted.function.as_ref()
     }
 
-    /// Whether it is a consumer that would give back more than it takes, which none does: what wanders to and fro is no consumer.
-    pub fn gives_back(&self) -> bool {
+    /// Why nothing of its kind is as it would have to be: consumers take, and draught grows with speed, if it depends on it. What stands in
+    /// for something else may be found like that. Source of the second: ASABE D497.7.
+    pub fn is_unlike_its_kind(&self) -> Option<&'static str> {
         let course = self.function().filter(|_| self.cause.id == "auxiliary_power" && self.cause.is_course());
-        course
-            .is_some_and(|course| gives_more(course.values.iter().flat_map(|(powers_w, _)| powers_w.iter())))
+        let gives = course
+            .is_some_and(|course| gives_more(course.values.iter().flat_map(|(powers_w, _)| powers_w.iter())));
+        let falls = self.cause.id == "drawbar_load"
+            && self
+                .cause
+                .terms
+                .iter()
+                .zip(&self.values)
+                .any(|(term, (_, ci95))| term.name == "linear_n_s_m" && ci95[1] < 0.0);
+        if gives {
+            Some("the consumer that was found would give back more than it takes, which none does")
+        } else if falls {
+            Some("the draught that was found would fall with speed, which none does")
+        } else {
+            None
+        }
     }
 
     /// The cause with its function as every run tells its own part of it.

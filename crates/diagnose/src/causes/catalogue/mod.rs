@@ -536,8 +536,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             MOTION,
             vec![
                 pull,
-                // Draught grows with speed, if it depends on it. Source: ASABE D497.7.
-                positive("linear_n_s_m", "N s/m", 0.004 * weight),
+                linear("linear_n_s_m", "N s/m", 0.004 * weight),
                 shape("from_s", "s"),
                 shape("to_s", "s"),
             ],

@@ -54,7 +54,7 @@ pub fn report(
     let own = |cured: &Cured| cured.cause.class != Class::Artefact && cured.may_be_none();
     let slight = refined.causes.iter().any(own);
     let unfollowed = over_time(refined) && !fit.is_followed();
-    let gives = refined.causes.iter().any(Cured::gives_back);
+    let unlike = refined.causes.iter().find_map(Cured::is_unlike_its_kind);
     let courses = refined.is_switched_alone();
     let verdict = if beside.withheld.is_some() {
         Verdict::CannotTell
@@ -93,7 +93,7 @@ pub fn report(
         strain,
         slight,
         unfollowed,
-        gives,
+        unlike,
         withheld: beside.withheld.as_deref(),
         null_space: &refined.null_space,
         own: told_by_itself(case, refined, beside.events),

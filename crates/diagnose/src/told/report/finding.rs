@@ -155,7 +155,7 @@ pub struct Doubts {
     pub timed: bool,
     /// Whether all that was found is switched in each run by itself, of which no other run tells.
     pub courses: bool,
-    /// Whether any cause may as well be none, or is a consumer that gives back, or all are functions of time that do not follow the runs they
+    /// Whether any cause may as well be none, or is unlike its kind, or all are functions of time that do not follow the runs they
     /// were made of.
     pub slight: bool,
     /// How far a free parameter ends from what was known of it, in standard deviations.

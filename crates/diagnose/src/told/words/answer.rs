@@ -26,8 +26,8 @@ pub struct Told<'a> {
     pub slight: bool,
     /// Whether all that was found are functions of time that do not follow the runs they were made of.
     pub unfollowed: bool,
-    /// Whether a consumer that was found would give back more than it takes.
-    pub gives: bool,
+    /// Why something that was found is not as anything of its kind.
+    pub unlike: Option<&'a str>,
     /// Why nothing is claimed, where it is not.
     pub withheld: Option<&'a str>,
     /// What the data cannot separate.
@@ -69,28 +69,7 @@ pub fn answer(told: &Told) -> String {
             "Something is missing, and no cause explains it in these recordings better than chance would, so none is claimed."
                 .to_owned(),
         ),
-        Verdict::CannotTell if told.withheld.is_none() => sentences.push(
-            if told.findings.first().is_some_and(FindingReport::is_doubtful) {
-                "Something is missing, and these recordings cannot tell which of several causes it is."
-            } else if told.findings.iter().any(FindingReport::is_doubtful) {
-                "Something is missing, and of a part of it these recordings cannot tell which of several causes it is."
-            } else if told.fit.grows() && told.own != Own::Courses {
-                "Something is missing, and what explains it in the runs that were fitted does not in those held out, so \
-                 that nothing of it is certain."
-            } else if told.slight {
-                "Something may be missing, and within its interval what was found may as well be none, so that nothing of \
-                 it is certain."
-            } else if told.gives {
-                "Something is missing, and the consumer that was found would give back more than it takes, which none does, so that nothing \
-                 of it is certain."
-            } else if told.unfollowed {
-                "Something is missing, and what was found follows not even the runs that it was made of as near as such a cause can, so \
-                 that nothing of it is certain."
-            } else {
-                "More is missing than was found, and what was found may stand in for it, so that nothing of it is certain."
-            }
-            .to_owned(),
-        ),
+        Verdict::CannotTell if told.withheld.is_none() => sentences.push(doubt(told)),
         _ => {}
     }
     sentences.extend(told.withheld.map(str::to_owned));
@@ -222,6 +201,27 @@ fn proof(told: &Told) -> String {
     };
     let own = if told.fit.held_out.is_some() { own } else { "" };
     format!("{text}{sensor}{doubt}{own}.")
+}
+
+/// Why what was found is not certain.
+fn doubt(told: &Told) -> String {
+    let found = |why: &str| format!("Something is missing, and {why}, so that nothing of it is certain.");
+    if told.findings.first().is_some_and(FindingReport::is_doubtful) {
+        "Something is missing, and these recordings cannot tell which of several causes it is.".to_owned()
+    } else if told.findings.iter().any(FindingReport::is_doubtful) {
+        "Something is missing, and of a part of it these recordings cannot tell which of several causes it is.".to_owned()
+    } else if told.fit.grows() && told.own != Own::Courses {
+        found("what explains it in the runs that were fitted does not in those held out")
+    } else if told.slight {
+        "Something may be missing, and within its interval what was found may as well be none, so that nothing of it is certain."
+            .to_owned()
+    } else if let Some(why) = told.unlike {
+        found(why)
+    } else if told.unfollowed {
+        found("what was found follows not even the runs that it was made of as near as such a cause can")
+    } else {
+        "More is missing than was found, and what was found may stand in for it, so that nothing of it is certain.".to_owned()
+    }
 }
 
 /// What is not explained.

@@ -63,7 +63,12 @@ pub fn report(
         verdict(
             &findings,
             &fit,
-            &Doubts { timed: timed(refined), courses, slight: slight || unfollowed, strain },
+            &Doubts {
+                timed: timed(refined),
+                courses,
+                slight: slight || unfollowed || unlike.is_some(),
+                strain,
+            },
         )
     };
     notes.extend(remarks(case, &found.unproven));

@@ -24,7 +24,10 @@ const BESIDE_M: f64 = 40.0;
 type Track = Vec<[f64; 2]>;
 
 /// What is said of runs that were laid.
-pub const SAID: &str = "the distance along the path is made of where they were";
+pub fn told(laid: &[String]) -> Option<String> {
+    (!laid.is_empty())
+        .then(|| format!("In {} the distance along the path is made of where they were.", laid.join(", ")))
+}
 
 /// Gives runs without a position the distance along the path that they share, where all of its runs know where they were.
 /// The runs that were laid.

@@ -3,8 +3,9 @@
 //! [`coastdown`] turns coast-downs into rolling resistance and road loads with honest intervals.
 //! The statistics underneath know nothing of vehicles and serve any estimation: [`least_squares`] minimises,
 //! [`clusters`] pools runs and gives intervals that survive run-to-run variation, [`separable`] says what the
-//! data cannot tell apart, [`curved`] makes the curvature that nobody recorded, [`laid`] the
-//! distance along a path that several runs share, [`sparse`] what lies between values that come less often than rows, [`statistics`] holds quantiles and seeded draws.
+//! data cannot tell apart, [`statistics`] holds quantiles and seeded draws. Of what a recording lacks [`curved`] makes the
+//! curvature, [`laid`] the distance along a path that several runs share, and [`sparse`] what lies between values that come
+//! less often than rows.
 
 pub mod clusters;
 pub mod coastdown;

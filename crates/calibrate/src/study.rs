@@ -191,10 +191,7 @@ impl<'a> Study<'a> {
         let turned = if straight { with_curvature(recording)? } else { None };
         let mut notes = turned.as_ref().map_or_else(Vec::new, |(_, made)| curved::told(made));
         let mut recording = turned.map_or_else(|| recording.clone(), |(turned, _)| turned);
-        let along = laid::lay(&mut recording.runs)?;
-        if !along.is_empty() {
-            notes.push(format!("In {} {}.", along.join(", "), laid::SAID));
-        }
+        notes.extend(laid::told(&laid::lay(&mut recording.runs)?));
         let mut runs: Vec<Measured> = Vec::new();
         let mut gaps: Vec<Sparse> = Vec::new();
         for (number, run) in recording.runs.iter().enumerate() {

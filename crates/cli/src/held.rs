@@ -103,14 +103,9 @@ fn drive_each(study: &Study, values: &[f64], what: &str, say: Say) -> Vec<Result
 /// A run beside what the model made of it, along a path that is `straight` or not.
 fn pair(run: &Measured, outcome: Outcome, straight: bool) -> Result<Pair, Failure> {
     let measured = masked(run, &outcome.trace)?;
-    let mut judged = measured.clone();
-    if straight {
-        // A scenario without a map knows how far a run came, and not where.
-        for name in ["east_m", "north_m"] {
-            judged.remove(name);
-        }
-    }
-    let mut comparison = compare_traces(&run.id, &judged, &outcome.trace)?;
+    let mut comparison = compare_traces(&run.id, &measured, &outcome.trace)?;
+    // A scenario without a map knows how far a run came, and not where.
+    comparison.channels.retain(|one| !(straight && ["east_m", "north_m"].contains(&one.channel.as_str())));
     // A total counts every sample, braked or not: energy does not care who stopped the vehicle.
     comparison.totals = compare_traces(&run.id, &run.trace, &outcome.trace)?.totals;
     let followed = run.how.followed(&run.trace).iter().filter(|followed| **followed).count();

@@ -103,9 +103,9 @@ fn measure(one: &Diagnosis, other: &Diagnosis) -> fn(&FitRuns) -> f64 {
     }
 }
 
-/// Whether another opinion takes the place of the first, in which `id` was doubtful. A clock that runs apart is one thing, and so are what
-/// is late, a scale and a wind; what takes more than they do to say the same is a patch. And a map that goes by another name, which was named beside it, is
-/// the same.
+/// Whether another opinion takes the place of the first, in which `id` was doubtful. A clock that runs apart is one thing, and
+/// so are what is late, a scale and a wind; what takes more than they do to say the same is a patch. And a map that goes by
+/// another name, which was named beside it, is the same.
 fn wins(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
     let is_one = [CLOCK, LATE, WIND].contains(&id) || SCALES.contains(&id);
     let patches = is_one && other.findings.len() > first.findings.len();

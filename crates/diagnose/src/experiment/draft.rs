@@ -57,7 +57,7 @@ pub fn drafted(
 ) -> Result<Option<Recorded>, DiagnoseError> {
     let course = &rolling(base, course);
     let ground = Ground::of(base);
-    let Some(known) = known(case, base, course.ballast_kg) else { return Ok(None) };
+    let Some(known) = ballasted(case, base, course.ballast_kg) else { return Ok(None) };
     let Some((time_s, speed, source)) = motion(base, course, model, &ground)? else { return Ok(None) };
     let mut travelled = vec![0.0];
     for (times, speeds) in time_s.windows(2).zip(speed.windows(2)) {
@@ -155,7 +155,7 @@ fn rolling(base: &Recorded, course: &Course) -> Course {
 }
 
 /// What is known of a run with ballast; none where the scenario has no one mass.
-pub fn known(case: &Case, base: &Recorded, ballast_kg: f64) -> Option<Vec<(String, f64)>> {
+pub fn ballasted(case: &Case, base: &Recorded, ballast_kg: f64) -> Option<Vec<(String, f64)>> {
     let mut known = base.measured.known.clone();
     if ballast_kg == 0.0 {
         return Some(known);

@@ -2,7 +2,7 @@
 
 use super::columns::nothing;
 use super::course::{Course, Without, courses};
-use super::draft::{base, drafted, forced, known as known_with};
+use super::draft::{ballasted, base, drafted, forced};
 use super::signature::by_values;
 use crate::balances::balance::{Kind, System, block_s};
 use crate::balances::gram::Column;
@@ -58,7 +58,7 @@ impl<'a> Stage<'a> {
             }
             let scenario = Scenario::of(document, case.registry)?;
             let ballast_kg = course.map_or(0.0, |course| course.ballast_kg);
-            let Some(known) = known_with(case, &base, ballast_kg) else { return Ok(None) };
+            let Some(known) = ballasted(case, &base, ballast_kg) else { return Ok(None) };
             let measured = Measured { known, ..base.measured.clone() };
             Ok(Some(case.study.model_of(&scenario, &measured, &values)?))
         };

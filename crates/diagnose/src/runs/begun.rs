@@ -5,7 +5,8 @@
 //!
 //! b is the speed that the rest of a run goes back to, a what the nominal model makes of the resistances, k by how much it is
 //! wrong. d is looked for on a grid, b and k by least squares; it counts where the speed goes on as it was, as a delay makes it, and
-//! does not merely bend, as a curve of the resistances or a push would. Source: change-point regression with a continuous line; Seber and Wild, *Nonlinear Regression* (1989), section 9.3.
+//! does not merely bend, as a curve of the resistances or a push would. Source: change-point regression with a continuous line;
+//! Seber and Wild, *Nonlinear Regression* (1989), section 9.3.
 
 use crate::causes::sensors::{corrected, small_latency_s};
 use crate::proof::refine::HALF_95;

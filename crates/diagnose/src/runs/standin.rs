@@ -125,7 +125,7 @@ pub fn prepared(recording: &Recording, wrong: bool, straight: bool) -> Result<Pr
         &leapt,
         "speed leaps to where no vehicle can get and back; nothing is told by it there",
     ));
-    own.notes.extend(told(&laid::lay(&mut own.recording.runs)?, laid::SAID));
+    own.notes.extend(laid::told(&laid::lay(&mut own.recording.runs)?));
     own.notes
         .extend(told(&whole, "no speed over ground was recorded; the speed of the wheels stands in for it"));
     own.notes.extend(told(

@@ -111,6 +111,8 @@ pub struct Measured {
     pub known: Vec<(String, f64)>,
     /// Samples that are compared.
     pub compared: Vec<bool>,
+    /// Samples at which it is not known what the model is driven by, and which are therefore not compared; empty where there are none.
+    pub unknown: Vec<bool>,
 }
 
 /// A scenario with the recording that it is held against.
@@ -559,11 +561,11 @@ fn measured(
         follows_brakes: !model.effects.iter().any(|effect| effect.name.starts_with("braking")),
     };
     let compared = compared(&trace, smoothing_s, settings.least_acceleration_m_s2);
-    let mut measured =
-        Measured { id: run.id.clone(), trace, how, signals, held_out: run.held_out, known, compared };
+    let (id, unknown) = (run.id.clone(), around.unknown);
+    let mut measured = Measured { id, trace, how, signals, held_out: run.held_out, known, compared, unknown };
     let followed = measured.how.followed(&measured.trace);
     measured.compared.iter_mut().zip(followed).for_each(|(compared, followed)| *compared &= !followed);
-    measured.compared.iter_mut().zip(around.unknown).for_each(|(compared, unknown)| *compared &= !unknown);
+    measured.compared.iter_mut().zip(&measured.unknown).for_each(|(compared, unknown)| *compared &= !unknown);
     Ok(measured)
 }
 

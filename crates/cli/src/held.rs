@@ -30,6 +30,8 @@ pub struct Pair {
     pub left_out: usize,
     /// Samples that are not compared, because something drove that was not recorded: the model follows the motion there.
     pub followed: usize,
+    /// Samples that are not compared, because what the model is driven by lacks values for longer than can be bridged.
+    pub unknown: usize,
     /// Whether the run is never fitted.
     pub held_out: bool,
 }
@@ -108,11 +110,17 @@ fn pair(run: &Measured, outcome: Outcome, straight: bool) -> Result<Pair, Failur
     comparison.channels.retain(|one| !(straight && ["east_m", "north_m"].contains(&one.channel.as_str())));
     // A total counts every sample, braked or not: energy does not care who stopped the vehicle.
     comparison.totals = compare_traces(&run.id, &run.trace, &outcome.trace)?.totals;
-    let followed = run.how.followed(&run.trace).iter().filter(|followed| **followed).count();
+    let follows = run.how.followed(&run.trace);
+    let followed = follows.iter().filter(|followed| **followed).count();
+    let is_followed = |sample: usize| follows.get(sample).copied().unwrap_or(false);
+    let unknown =
+        run.unknown.iter().enumerate().filter(|(sample, unknown)| **unknown && !is_followed(*sample));
+    let unknown = unknown.count();
     Ok(Pair {
-        // What is followed is not compared either.
-        left_out: run.compared.iter().filter(|compared| !**compared).count() - followed,
+        // What is followed is not compared either, nor is what nobody knows the drive of.
+        left_out: run.compared.iter().filter(|compared| !**compared).count() - followed - unknown,
         followed,
+        unknown,
         signals: run.signals.clone(),
         drive: drive_name(run.how.drive),
         held_out: run.held_out,
@@ -227,6 +235,7 @@ mod tests {
             held_out: false,
             known: Vec::new(),
             compared: vec![true, false, true],
+            unknown: Vec::new(),
         };
         let left = |name: &str, voltage: Origin| {
             let masked = masked(&run, &trace(voltage)).unwrap();

@@ -116,6 +116,10 @@ pub fn notes(of_study: &[String], pairs: &[Pair]) -> Vec<String> {
         |pair| pair.followed,
         "what drives the vehicle there, or how hard its brakes hold, was not recorded: the model follows its motion",
     );
+    left_out(
+        |pair| pair.unknown,
+        "what the model is driven by lacks values there for longer than can be bridged",
+    );
     notes
 }
 
@@ -132,7 +136,7 @@ pub fn document(
         run: pair.comparison.run.clone(),
         drive: pair.drive,
         judged_by: pair.signals.clone(),
-        samples_left_out: pair.left_out + pair.followed,
+        samples_left_out: pair.left_out + pair.followed + pair.unknown,
     };
     let required = |check: &Check| Required { text: check.requirement.to_string(), check: check.clone() };
     Comparison {

@@ -94,6 +94,23 @@ fn what_is_logged_less_often_is_told_to_the_model_too() {
     assert!(error_m_s < 1e-3, "{error_m_s}: {told}");
 }
 
+/// The same log with a gap of ten seconds, which no line bridges: it is left out, and no brakes are blamed.
+#[test]
+fn a_gap_in_what_drives_the_model_is_left_out_by_its_own_name() {
+    let place = Place::new();
+    scenario(&place, "");
+    place.write("recording.ron", r#"(about: "a load", runs: [(id: "r1", file: "r1.csv")])"#);
+    let row = |row: u32| {
+        let payload = if (50..150).contains(&row) { "" } else { "1000" };
+        format!("{:.1},10,{:.3},{payload}\n", 0.1 * f64::from(row), 0.02 * 2000.0 * 9.806_65)
+    };
+    let rows: String = (0..=200).map(row).collect();
+    place.write("r1.csv", &format!("time_s,speed_m_s,tractive_force_n,payload_kg\n{rows}"));
+    let (_, told) = compared(&place);
+    assert!(told.contains("100 of 201 samples") && told.contains("longer than can be bridged"), "{told}");
+    assert!(!told.contains("least_acceleration_m_s2"), "{told}");
+}
+
 /// A scenario that says no heading knows how far a run came, and not where: 200 m due north of a place of its own.
 #[test]
 fn where_a_run_was_is_not_held_against_a_straight_path() {

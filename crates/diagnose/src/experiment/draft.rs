@@ -42,6 +42,7 @@ fn shortened(drive: &Recorded) -> Recorded {
     drive.motion.value.truncate(short.len());
     drive.motion.slope.truncate(short.len());
     drive.measured.compared.truncate(short.len());
+    drive.measured.unknown.truncate(short.len());
     drive.stands_in.truncate(short.len());
     drive.measured.trace = short;
     drive
@@ -121,6 +122,7 @@ pub fn drafted(
         how,
         held_out: false,
         compared,
+        unknown: Vec::new(),
         signals: base.measured.signals.clone(),
         known,
     };

@@ -29,6 +29,8 @@ mod ruts;
 mod scene;
 mod server;
 mod setting;
+#[cfg(all(test, unix))]
+mod stand_in;
 mod strip;
 mod summary;
 mod surroundings;

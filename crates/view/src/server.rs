@@ -128,15 +128,8 @@ fn start(viewer: &Path, path: &Path, patience: Duration) -> Result<Server, ViewE
 #[cfg(all(test, unix))]
 mod tests {
     use super::*;
+    use crate::stand_in::program;
     use std::io::{Read as _, Write as _};
-    use std::os::unix::fs::PermissionsExt as _;
-
-    fn program(folder: &Path, text: &str) -> PathBuf {
-        let path = folder.join("rerun");
-        std::fs::write(&path, format!("#!/bin/sh\n{text}\n")).unwrap();
-        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
-        path
-    }
 
     fn until(holds: impl Fn() -> bool) -> bool {
         let started = Instant::now();

@@ -121,14 +121,7 @@ mod tests {
     #[cfg(unix)]
     mod programs {
         use super::*;
-        use std::os::unix::fs::PermissionsExt as _;
-
-        fn program(folder: &Path, text: &str) -> PathBuf {
-            let path = folder.join("rerun");
-            std::fs::write(&path, format!("#!/bin/sh\n{text}\n")).unwrap();
-            std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
-            path
-        }
+        use crate::stand_in::program;
 
         #[test]
         fn a_viewer_of_another_version_is_refused() {

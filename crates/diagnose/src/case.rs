@@ -353,7 +353,7 @@ impl<'a> Case<'a> {
 
     fn around(&self, model: &headland_sim::Model) -> Around {
         let moving = |run: &'_ Recorded| -> Vec<f64> {
-            let speeds = run.motion.value.iter().step_by(7).copied();
+            let speeds = run.motion.value.iter().step_by(7).map(|speed| speed.abs());
             speeds.filter(|speed| *speed > crate::runs::recorded::SLOWEST_M_S).collect()
         };
         let speeds = sorted(&self.runs.iter().flat_map(moving).collect::<Vec<f64>>());

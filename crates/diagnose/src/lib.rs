@@ -130,7 +130,7 @@ fn diagnose_once(
     let listed = found.clone();
     let (found, law) = unlisted::unlisted(&mut case, &system, &mut pool, found)?;
     let law = law.map(|law| (found.clone(), law));
-    let events = brakes::standing(&case, &refine::plain(&case, &pool, &found), &events)?;
+    let events = brakes::standing(&case, &refine::plain(&case, &pool, &found), &events, &braked)?;
     let proven = withdraw::proven(&case, &system, &mut pool, found, &events, &faults)?;
     let proven = withdraw::or_listed(&case, &system, &mut pool, (proven, listed), &events, &faults)?;
     let proven = withdraw::or_law(&case, &system, &mut pool, proven, law, &events, &faults)?;

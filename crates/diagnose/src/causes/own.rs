@@ -216,7 +216,7 @@ fn balances(case: &Case, cause: &Cause) -> Result<Option<&'static [Kind]>, Diagn
         let (mut size, mut bent) = (0.0_f64, 0.0_f64);
         for (run, recorded) in case.runs.iter().enumerate() {
             let of = |after: &[Said]| change(*kind, recorded, &case.nominal[run], &after[run]);
-            let moves = recorded.motion.value.iter().map(|speed| *speed > SLOWEST_M_S);
+            let moves = recorded.motion.value.iter().map(|speed| speed.abs() > SLOWEST_M_S);
             for ((whole, half), moves) in of(&whole).into_iter().zip(of(&half)).zip(moves) {
                 // What resists at rest only holds.
                 if moves && whole.is_finite() && half.is_finite() {

@@ -251,6 +251,7 @@ impl State<'_> {
             stand: best,
             first,
             needed,
+            several: None,
         }
     }
 

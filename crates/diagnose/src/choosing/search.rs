@@ -91,6 +91,8 @@ pub struct Found {
     pub first: Stand,
     /// What a growth had to exceed.
     pub needed: f64,
+    /// The best set of several causes that all runs share, none of them a function, accepted or not.
+    pub several: Option<Stand>,
 }
 
 /// At most so many causes.
@@ -165,14 +167,20 @@ pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]
         }
         open = grown;
     }
+    let mut several: Option<Stand> = None;
     for stand in state.together(&first, banned) {
         if worth(&stand) > worth(&best) + LEAST_GAIN {
             best = stand.clone();
         }
+        let shared = |part: &Part| part.spread.is_none() && !state.cause(&part.trial).by_run;
+        let better = several.as_ref().is_none_or(|other| worth(&stand) > worth(other));
+        if better && stand.parts.iter().all(shared) {
+            several = Some(stand.clone());
+        }
         others.push(stand);
     }
     let never = (0..case.causes.len()).filter(|cause| banned.contains(&case.causes[*cause].id)).collect();
-    let mut found = state.conclude(best, first, (tried, never), needed)?;
+    let mut found = Found { several, ..state.conclude(best, first, (tried, never), needed)? };
     found.unproven.retain(|cause| !banned.contains(&case.causes[*cause].id));
     let unproven = case.ids(&found.unproven);
     others.retain(|stand| !stand.parts.iter().any(|part| state.cause(&part.trial).is_banned(&unproven)));

@@ -101,6 +101,7 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
             }
         }
     }
+    added |= beside_each_other(case, system, pool, found, shaped)?;
     Ok(added)
 }
 
@@ -265,7 +266,55 @@ fn best(
         parts.push(Part { trial: trial.clone(), spread: spread.clone() });
         state.likely(&parts, &noises)
     };
-    let mut likely = |shape: &[f64]| likeliest(case, system, pool, (cause, shape), judged);
+    moved(case, (cause, start), |shape| likeliest(case, system, pool, (cause, shape), judged))
+}
+
+/// Several causes that all runs share each at its best shape beside the others, where levels of each run were accepted: those follow
+/// what a grid leaves between its points, and would stand for all of them. Whether there was anything to add.
+fn beside_each_other(
+    case: &Case,
+    system: &System,
+    pool: &mut Pool,
+    found: &Found,
+    shaped: impl Fn(usize) -> bool,
+) -> Result<bool, DiagnoseError> {
+    let by_run =
+        found.accepted.iter().any(|one| one.function.is_some() && case.causes[one.trial.cause].by_run);
+    let Some(stand) = found.several.as_ref().filter(|_| by_run) else { return Ok(false) };
+    let noises = State { case, system, pool, fit: &case.fit }.quiet(stand);
+    let mut parts = stand.parts.clone();
+    let mut added = false;
+    for place in 0..parts.len() {
+        let own = parts[place].trial.clone();
+        if !shaped(own.cause) {
+            continue;
+        }
+        let judged = |state: &State, trial: &Trial| {
+            let mut parts = parts.clone();
+            parts[place].trial = trial.clone();
+            (trial.terms == own.terms).then(|| state.likely(&parts, &noises)).flatten()
+        };
+        let with = |shape: &[f64]| likeliest(case, system, pool, (own.cause, shape), judged);
+        let shape = moved(case, (own.cause, &own.shape), with)?;
+        if shape == own.shape {
+            continue;
+        }
+        let before = pool.trials.len();
+        add_trial(case, system, pool, own.cause, &shape)?;
+        if let Some(trial) = pool.trials[before..].iter().find(|trial| trial.terms == own.terms) {
+            parts[place].trial = trial.clone();
+        }
+        added = true;
+    }
+    Ok(added)
+}
+
+/// The likeliest shape of a cause that is reached by moving one parameter at a time.
+fn moved(
+    case: &Case,
+    (cause, start): (usize, &[f64]),
+    mut likely: impl FnMut(&[f64]) -> Result<f64, DiagnoseError>,
+) -> Result<Vec<f64>, DiagnoseError> {
     let terms: Vec<_> = case.causes[cause].terms.iter().filter(|term| !term.linear).collect();
     let mut shape = start.to_vec();
     let mut greatest = likely(&shape)?;

@@ -1,6 +1,7 @@
 //! Causes that say nothing one by one: what each of them leaves of the others passes for noise. They are grown together at
 //! the noise that neighbouring rows show, and judged with the noise that they leave.
 
+use crate::balances::gram::Reduced;
 use crate::balances::noise::{Noise, Noises};
 use crate::causes::catalogue::{Cause, Form};
 use crate::causes::profile::COARSE;
@@ -57,17 +58,17 @@ impl State<'_> {
         let mut open: Vec<Vec<Part>> = vec![start];
         let mut all: Vec<Vec<Part>> = Vec::new();
         while open.first().is_some_and(|parts| parts.len() < MOST_CAUSES) {
-            let mut grown: Vec<Scored> =
-                open.iter().flat_map(|parts| self.one_more(parts, noises, banned)).collect();
+            let mut grown: Vec<Scored> = Vec::new();
+            for parts in &open {
+                let Some(reduced) = self.reduced(noises, parts) else { continue };
+                let mut own = self.one_more(parts, &reduced, banned);
+                own.sort_by(|one, other| other.0.total_cmp(&one.0));
+                dedup(&mut own, |part| self.id(&part.trial));
+                own.truncate(beam);
+                grown.extend(own.into_iter().map(|one| self.reshaped(one, &reduced)));
+            }
             grown.sort_by(|one, other| other.0.total_cmp(&one.0));
-            let mut known: Vec<Vec<&str>> = Vec::new();
-            grown.retain(|(_, parts)| {
-                let mut ids: Vec<&str> = parts.iter().map(|part| self.id(&part.trial)).collect();
-                ids.sort_unstable();
-                let new = !known.contains(&ids);
-                known.push(ids);
-                new
-            });
+            dedup(&mut grown, |part| self.id(&part.trial));
             grown.truncate(beam);
             open = grown.into_iter().map(|(_, parts)| parts).collect();
             if open.first().is_some_and(|parts| parts.len() > few) {
@@ -95,26 +96,74 @@ impl State<'_> {
         trials.filter_map(part).collect()
     }
 
-    /// A set with one cause more that is no function, the best shape of each cause, at a noise.
-    fn one_more(&self, parts: &[Part], noises: &Noises, banned: &[&str]) -> Vec<Scored> {
-        let Some(reduced) = self.reduced(noises, parts) else { return Vec::new() };
-        let (used, sd) = (self.columns(parts), self.sd());
+    /// Sets with one cause more that is no function, in each of its shapes, at the noise of `reduced`.
+    fn one_more(&self, parts: &[Part], reduced: &Reduced, banned: &[&str]) -> Vec<Scored> {
         let taken = |cause: &Cause| {
             cause.is_banned(banned) || parts.iter().any(|part| self.id(&part.trial) == cause.id)
         };
-        let mut all: Vec<Scored> = Vec::new();
-        for trial in &self.pool.trials {
+        let open = self.pool.trials.iter().filter(|trial| {
             let cause = self.cause(trial);
-            if cause.is_function() || taken(cause) {
-                continue;
-            }
-            let with: Vec<usize> = used.iter().chain(&trial.columns).copied().collect();
-            let Some(estimate) = reduced.estimate(&with, &sd) else { continue };
-            let parts: Vec<Part> =
-                parts.iter().cloned().chain([Part { trial: trial.clone(), spread: None }]).collect();
-            let score = estimate.log_evidence + self.heavy(&with, &estimate.beta) - self.choices(&parts);
-            all.push((score, parts));
-        }
-        all
+            !cause.is_function() && !taken(cause)
+        });
+        let with = |trial: &Trial| {
+            let part = Part { trial: trial.clone(), spread: None };
+            self.scored(parts.iter().cloned().chain([part]).collect(), reduced)
+        };
+        open.filter_map(with).collect()
     }
+
+    /// A set with each of its causes in the shape that suits best beside the others: what was taken first took the shape that stands for
+    /// what came later as well.
+    fn reshaped(&self, (score, parts): Scored, reduced: &Reduced) -> Scored {
+        /// Shapes that depend on each other are found in turns.
+        const TURNS: usize = 3;
+        let mut best = (score, parts);
+        for _ in 0..TURNS {
+            let before = best.0;
+            for place in 0..best.1.len() {
+                let own = best.1[place].clone();
+                if own.spread.is_some() {
+                    continue;
+                }
+                let alike = self.pool.trials.iter().filter(|trial| {
+                    trial.cause == own.trial.cause
+                        && trial.terms == own.trial.terms
+                        && trial.shape != own.trial.shape
+                });
+                let with = |trial: &Trial| {
+                    let mut parts = best.1.clone();
+                    parts[place].trial = trial.clone();
+                    self.scored(parts, reduced)
+                };
+                let top = alike.filter_map(with).max_by(|one, other| one.0.total_cmp(&other.0));
+                if let Some(top) = top.filter(|top| top.0 > best.0) {
+                    best = top;
+                }
+            }
+            if best.0 <= before {
+                break;
+            }
+        }
+        best
+    }
+
+    /// A set, and how good it is at the noise of `reduced`.
+    fn scored(&self, parts: Vec<Part>, reduced: &Reduced) -> Option<Scored> {
+        let columns = self.columns(&parts);
+        let estimate = reduced.estimate(&columns, &self.sd())?;
+        let score = estimate.log_evidence + self.heavy(&columns, &estimate.beta) - self.choices(&parts);
+        Some((score, parts))
+    }
+}
+
+/// Of sets of the same causes only the first stays.
+fn dedup<'a>(sets: &mut Vec<Scored>, id: impl Fn(&Part) -> &'a str) {
+    let mut known: Vec<Vec<&str>> = Vec::new();
+    sets.retain(|(_, parts)| {
+        let mut ids: Vec<&str> = parts.iter().map(&id).collect();
+        ids.sort_unstable();
+        let new = !known.contains(&ids);
+        known.push(ids);
+        new
+    });
 }

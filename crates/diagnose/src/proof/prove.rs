@@ -297,18 +297,18 @@ pub fn text(case: &Case, cured: &Cured, run: usize) -> Option<String> {
 /// Spells as a scenario writes them.
 fn spelt(id: &str, events: &[&Event]) -> String {
     if id != "braking" {
-        let one = |event: &&Event| {
-            format!(
-                "drawbar_load(force_n: {:?}, from_s: {:?}, to_s: {:?})",
-                event.force_n, event.from_s, event.to_s
-            )
+        let one = |(from_s, to_s, force_n): (f64, f64, f64)| {
+            format!("drawbar_load(force_n: {force_n:?}, from_s: {from_s:?}, to_s: {to_s:?})")
         };
-        return events.iter().map(one).collect::<Vec<_>>().join(", ");
+        return events.iter().flat_map(|event| event.steps()).map(one).collect::<Vec<_>>().join(", ");
     }
     let (mut times, mut forces) = (Vec::new(), Vec::new());
     for event in events {
-        times.extend([format!("{:?}", event.from_s), format!("{:?}", event.to_s)]);
-        forces.push(format!("{:?}", event.force_n));
+        for (from_s, _, force_n) in event.steps() {
+            times.push(format!("{from_s:?}"));
+            forces.push(format!("{force_n:?}"));
+        }
+        times.push(format!("{:?}", event.to_s));
         forces.push("0.0".to_owned());
     }
     // The times are edges: the last one ends the last, empty spell.
@@ -382,8 +382,9 @@ fn along(case: &Case, cured: &Cured, refined: &Refined, kind: Kind) -> Result<Ve
         let of_run = |(run, recorded): (usize, &Recorded)| -> Vec<f64> {
             let own: Vec<&Event> = cured.events.iter().filter(|event| event.run == run).collect();
             let at = |time: &f64| {
-                let inside = own.iter().filter(|event| (event.from_s..event.to_s).contains(time));
-                -inside.map(|event| event.force_n).sum::<f64>()
+                let steps = own.iter().flat_map(|event| event.steps());
+                let inside = steps.filter(|(from_s, to_s, _)| (*from_s..*to_s).contains(time));
+                -inside.map(|(_, _, force_n)| force_n).sum::<f64>()
             };
             recorded.measured.trace.time_s().iter().map(at).collect()
         };

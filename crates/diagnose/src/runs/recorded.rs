@@ -225,7 +225,7 @@ impl Recorded {
         let Some(force) = &self.force_n else { return self.acceleration_m_s2.clone() };
         let at = |(index, recorded): (usize, &f64)| {
             let made = (force[index] - resistance_n[index]) / effective_mass_kg[index];
-            if made.is_finite() && self.motion.value[index] > SLOWEST_M_S { made } else { *recorded }
+            if made.is_finite() && self.motion.value[index].abs() > SLOWEST_M_S { made } else { *recorded }
         };
         self.motion.slope.iter().enumerate().map(at).collect()
     }

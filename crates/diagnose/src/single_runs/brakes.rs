@@ -11,13 +11,15 @@ use crate::proof::refine::Refined;
 use crate::runs::places::stretch;
 use crate::runs::recorded::{Recorded, SLOWEST_M_S};
 use crate::runs::said::Said;
+use crate::single_runs::course::steps;
 use crate::single_runs::events::{BRAKED_M_S2, Event, OPEN};
+use crate::single_runs::regeneration::{limit_w, weak};
 use crate::{Case, DiagnoseError};
 use headland_calibrate::statistics::{NORMAL_OF_MEDIAN, mean, median, quantile_of_sorted, sorted};
 use headland_units::constants::STANDARD_GRAVITY_M_S2;
 
 /// What is averaged before it is judged [s]: a pedal is not pressed for less.
-const WINDOW_S: f64 = 0.4;
+pub const WINDOW_S: f64 = 0.4;
 /// A braking force is so many times what is usually left over, by its median absolute deviation.
 const SIGMAS: f64 = 6.0;
 /// And so many times what is left over in all but two of a hundred samples that are driven.
@@ -100,36 +102,69 @@ pub fn off_the_ground(case: &Case, sound: &[Vec<bool>], events: &[Event]) -> Vec
     events.iter().filter(|event| !is_ground(case, &excess, event)).cloned().collect()
 }
 
-/// What holds every run back beside the model's resistances [N]; none where no force is known.
-/// Spells that what was found does not explain: one that a cold driveline or a wind makes up, where the nominal scenario knew of
-/// neither, is none.
-pub fn standing(case: &Case, refined: &Refined, events: &[Event]) -> Result<Vec<Event>, DiagnoseError> {
+/// Spells that what was found does not explain, as strong as they are beside it: one that a cold driveline or a wind makes up, where
+/// the nominal scenario knew of neither, is none. Those of `braked` were told beside the nominal scenario.
+pub fn standing(
+    case: &Case,
+    refined: &Refined,
+    events: &[Event],
+    braked: &[Event],
+) -> Result<Vec<Event>, DiagnoseError> {
     /// Of its force has to be left beside what was found.
     const LEFT: f64 = 0.5;
+    let limit_w = limit_w(case, braked).map(|(limit_w, _)| limit_w);
+    // As `event` makes of this noise that of a whole spell.
+    let noise_n = |event: &Event| event.sd_n * ((event.to_s - event.from_s) / WINDOW_S).max(1.0).sqrt();
+    let usual_n = braked.first().map_or(f64::NAN, noise_n);
     let mut standing = Vec::new();
     for (number, run) in case.runs.iter().enumerate() {
         let own: Vec<&Event> = events.iter().filter(|event| event.run == number).collect();
-        if own.is_empty() {
+        if own.is_empty() && limit_w.is_none() {
             continue;
         }
         let scenario = improved(case, refined, number)?;
         let said = case.said_of(std::slice::from_ref(run), &scenario, &refined.values())?;
         let everywhere = vec![true; run.measured.trace.len()];
-        let excess_n = said.first().and_then(|said| excess_n(run, said, &everywhere, Rolling::Taken));
-        let left_n = |event: &Event| {
-            let samples = run.measured.trace.time_s().iter().zip(excess_n.iter().flatten());
-            let inside = samples.filter(|(time_s, left_n)| {
-                (event.from_s..=event.to_s).contains(*time_s) && left_n.is_finite()
-            });
-            mean(&inside.map(|(_, left_n)| *left_n).collect::<Vec<f64>>())
-        };
-        // Where nothing is known of it, it stays what it was.
-        let gone = |event: &Event| left_n(event) < LEFT * event.force_n;
-        standing.extend(own.into_iter().filter(|event| !gone(event)).cloned());
+        let beside = |said: &Said| excess_n(run, said, &everywhere, Rolling::Taken).unwrap_or_default();
+        let (left_n, nominal_n) =
+            (said.first().map(beside).unwrap_or_default(), beside(&case.nominal[number]));
+        let known = |time_s: f64| own.iter().any(|event| (event.from_s..=event.to_s).contains(&time_s));
+        let weak = limit_w.map_or_else(Vec::new, |limit_w| weak(run, (limit_w, usual_n), &left_n, known));
+        for event in own {
+            let mean_n = mean_within(event, run, &left_n);
+            // Where nothing is known of it, it stays what it was.
+            if mean_n < LEFT * event.force_n {
+                continue;
+            }
+            let explained_n = mean_within(event, run, &nominal_n) - mean_n;
+            let told_before = braked.contains(event) && explained_n.is_finite();
+            let force_n = event.force_n - if told_before { explained_n } else { 0.0 };
+            standing.push(Event { force_n, ..event.clone() });
+        }
+        standing.extend(weak);
+        let window_s = averaged_over_s(run.measured.trace.time_s());
+        for event in standing.iter_mut().filter(|event| event.run == number) {
+            event.course = steps(event, &within(event, run, &left_n), (noise_n(event), window_s));
+        }
     }
+    standing.sort_by(|one, other| one.run.cmp(&other.run).then(one.from_s.total_cmp(&other.from_s)));
     Ok(standing)
 }
 
+/// Mean of what is known in a spell.
+fn mean_within(event: &Event, run: &Recorded, values: &[f64]) -> f64 {
+    mean(&within(event, run, values).into_iter().map(|(_, value)| value).collect::<Vec<f64>>())
+}
+
+/// Times [s] and values of the samples in a spell that are known.
+fn within(event: &Event, run: &Recorded, values: &[f64]) -> Vec<(f64, f64)> {
+    let samples = run.measured.trace.time_s().iter().copied().zip(values.iter().copied());
+    samples
+        .filter(|(time_s, value)| (event.from_s..=event.to_s).contains(time_s) && value.is_finite())
+        .collect()
+}
+
+/// What holds every run back beside the model's resistances [N]; none where no force is known.
 fn excesses_n(case: &Case, sound: &[Vec<bool>], rolling: Rolling) -> Vec<Option<Vec<f64>>> {
     let runs = case.runs.iter().zip(&case.nominal).zip(sound);
     runs.map(|((run, said), sound)| excess_n(run, said, sound, rolling)).collect()
@@ -205,14 +240,10 @@ fn heard(time_s: &[f64], known: impl Fn(usize) -> bool) -> Vec<bool> {
 
 /// Mean over [`WINDOW_S`], or over a few samples where those are rarer, around each sample that is known, where it has others on
 /// both sides: at an end, what is left of the window is noisier than the rest.
-fn averaged(time_s: &[f64], values: &[f64]) -> Vec<f64> {
+pub fn averaged(time_s: &[f64], values: &[f64]) -> Vec<f64> {
     /// Samples on the one side for each on the other, at most.
     const LOPSIDED: usize = 2;
-    /// Samples that are rare and come a little early or late still have one on each side.
-    const STEPS: f64 = 3.0;
-    let steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    // One sample makes no step, and the median of none is no number: the other is the greatest then.
-    let window_s = WINDOW_S.max(STEPS * median(&steps));
+    let window_s = averaged_over_s(time_s);
     let (mut from, mut to) = (0, 0);
     (0..values.len())
         .map(|index| {
@@ -230,6 +261,15 @@ fn averaged(time_s: &[f64], values: &[f64]) -> Vec<f64> {
             if values[index].is_finite() && even { sum / (before + after + 1) as f64 } else { f64::NAN }
         })
         .collect()
+}
+
+/// [`WINDOW_S`], or longer where samples are rare [s].
+fn averaged_over_s(time_s: &[f64]) -> f64 {
+    /// Samples that come a little early or late still have one on each side.
+    const STEPS: f64 = 3.0;
+    let steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    // One sample makes no step, and the median of none is no number: the other is the greatest then.
+    WINDOW_S.max(STEPS * median(&steps))
 }
 
 /// First and last sample of every stretch that is braked.
@@ -283,7 +323,8 @@ fn event(run: &Recorded, number: usize, excess: &[f64], (from, to): (usize, usiz
     let lasted_s = time_s[to] - time_s[from];
     // As many values that know nothing of each other as there are windows.
     let sd_n = sd_n / (lasted_s / WINDOW_S).max(1.0).sqrt();
-    let own = Event { run: number, from_s: time_s[from], to_s: time_s[to], force_n, sd_n, gain: 0.0 };
+    let (from_s, to_s) = (time_s[from], time_s[to]);
+    let own = Event { run: number, from_s, to_s, force_n, sd_n, gain: 0.0, course: Vec::new() };
     let own = match run.measured.trace.get("brake") {
         Some(switch) => switched(&own, time_s, (excess, switch), run.measured.how.smoothing_s),
         None => own,
@@ -336,8 +377,8 @@ mod tests {
         let raw: Vec<f64> = switch.iter().map(|on| 10e3 * on).collect();
         let excess = averaged(&time_s, &raw);
         for (from, to) in [(40, 61), (66, 87)] {
-            let own =
-                Event { run: 0, from_s: time_s[from], to_s: time_s[to], force_n: 0.0, sd_n: 1.0, gain: 0.0 };
+            let (from_s, to_s) = (time_s[from], time_s[to]);
+            let own = Event { run: 0, from_s, to_s, force_n: 0.0, sd_n: 1.0, gain: 0.0, course: Vec::new() };
             let told = switched(&own, &time_s, (&excess, &switch), 0.0);
             assert!((told.to_s - told.from_s - 1.1).abs() < 1e-9, "{told:?}");
             assert!((told.force_n - 10e3).abs() < 100.0, "{told:?}");

@@ -14,6 +14,7 @@ use crate::causes::trial::Pool;
 use crate::choosing::search::Found;
 use crate::choosing::state::State;
 use crate::runs::recorded::Recorded;
+use crate::single_runs::course::Step;
 use headland_units::constants::STANDARD_GRAVITY_M_S2;
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -33,6 +34,19 @@ pub struct Event {
     pub sd_n: f64,
     /// Growth of ln p.
     pub gain: f64,
+    /// How strong it is while it lasts; nothing where that is the same all the time.
+    pub course: Vec<Step>,
+}
+
+impl Event {
+    /// Begin, end [s] and force [N] of its steps, one after the other.
+    pub fn steps(&self) -> Vec<(f64, f64, f64)> {
+        if self.course.is_empty() {
+            return vec![(self.from_s, self.to_s, self.force_n)];
+        }
+        let begins = std::iter::once(self.from_s).chain(self.course.iter().map(|step| step.to_s));
+        begins.zip(&self.course).map(|(from_s, step)| (from_s, step.to_s, step.force_n)).collect()
+    }
 }
 
 /// Growth of ln p from which on a spell is no accident among some ten thousand stretches.
@@ -245,6 +259,7 @@ impl Box {
             force_n,
             sd_n: self.square.sqrt().recip(),
             gain,
+            course: Vec::new(),
         }
     }
 }

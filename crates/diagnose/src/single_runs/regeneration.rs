@@ -4,8 +4,10 @@
 //! Source: blending of brakes; Guzzella and Sciarretta, *Vehicle Propulsion Systems* (2013), section 4.3.
 
 use crate::Case;
+use crate::runs::recorded::Recorded;
+use crate::single_runs::brakes::{WINDOW_S, averaged};
 use crate::single_runs::events::Event;
-use headland_calibrate::statistics::{NORMAL_OF_MEDIAN, median, quantile_of_sorted, sorted};
+use headland_calibrate::statistics::{NORMAL_OF_MEDIAN, mean, median, quantile_of_sorted, sorted};
 
 /// Fewer samples tell of no limit.
 const FEWEST: usize = 30;
@@ -59,6 +61,38 @@ pub fn leave_out(case: &Case, events: &[Event], sound: &mut [Vec<bool>]) {
             *sound &= !at_limit;
         }
     }
+}
+
+/// Spells of a run at the limit beside those that are known, too weak to be told without it: whatever holds the vehicle back there
+/// beside `left_n`, what is left of the model [N], is its brakes. A mean over [`WINDOW_S`] has a noise of `noise_n`.
+pub fn weak(
+    run: &Recorded,
+    (limit_w, noise_n): (f64, f64),
+    left_n: &[f64],
+    known: impl Fn(f64) -> bool,
+) -> Vec<Event> {
+    /// Standard deviations from which on it is no noise.
+    const SIGMAS: f64 = 6.0;
+    let (Some(force_n), time_s) = (&run.force_n, run.measured.trace.time_s()) else { return Vec::new() };
+    let back_w: Vec<f64> =
+        force_n.iter().zip(&run.motion.value).map(|(force, speed)| -force * speed).collect();
+    let back_w = averaged(time_s, &back_w);
+    let at_limit = |sample: &usize| {
+        back_w[*sample] >= (1.0 - SAME) * limit_w
+            && left_n.get(*sample).is_some_and(|left_n| left_n.is_finite())
+    };
+    let samples: Vec<usize> =
+        (0..time_s.len()).filter(|sample| at_limit(sample) && !known(time_s[*sample])).collect();
+    let stretches = samples.chunk_by(|one, other| other - one == 1);
+    let event = |stretch: &[usize]| {
+        let (from_s, to_s) = (time_s[stretch[0]], time_s[stretch[stretch.len() - 1]]);
+        let force_n = mean(&stretch.iter().map(|sample| left_n[*sample]).collect::<Vec<f64>>());
+        let sd_n = noise_n / ((to_s - from_s) / WINDOW_S).max(1.0).sqrt();
+        let gain = 0.5 * (force_n / sd_n).powi(2);
+        Event { run: run.number, from_s, to_s, force_n, sd_n, gain, course: Vec::new() }
+    };
+    let told = |event: &Event| event.to_s - event.from_s >= WINDOW_S && event.force_n > SIGMAS * event.sd_n;
+    stretches.map(event).filter(told).collect()
 }
 
 /// The limit of powers that are given back [W] while somebody brakes in so many spells, and at other times, by a drive that

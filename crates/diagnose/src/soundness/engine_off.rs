@@ -39,7 +39,7 @@ fn off(run: &Recorded, modelled: &[f64]) -> Vec<(usize, usize)> {
     let Some(fuel) = run.measured.trace.get("fuel_rate_kg_s") else { return Vec::new() };
     let time_s = run.measured.trace.time_s();
     let is_off =
-        |index: usize| run.motion.value[index] < SLOWEST_M_S && fuel[index] < NOTHING * modelled[index];
+        |index: usize| run.motion.value[index].abs() < SLOWEST_M_S && fuel[index] < NOTHING * modelled[index];
     let mut all = stretches(is_off, modelled.len().min(fuel.len()));
     all.retain(|(from, to)| time_s[*to] - time_s[*from] >= LEAST_S);
     // A mean that reaches over its ends holds some of it.

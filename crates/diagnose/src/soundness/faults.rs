@@ -115,7 +115,7 @@ fn coarse(drives: &[Recorded], name: &str, sensors: &[(String, Sensor)]) -> Opti
         let Some(values) = own(drive, name) else { continue };
         for (index, pair) in values.windows(2).enumerate() {
             let step = (pair[1] - pair[0]).abs();
-            if drive.motion.value[index] > SLOWEST_M_S && step.is_finite() && pair[0] != 0.0 {
+            if drive.motion.value[index].abs() > SLOWEST_M_S && step.is_finite() && pair[0] != 0.0 {
                 count += 1;
                 if step == 0.0 {
                     repeated += 1;
@@ -272,7 +272,7 @@ fn nought(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Option<F
             else {
                 continue;
             };
-            let moving = (from..=to).all(|index| drive.motion.value[index] > SLOWEST_M_S);
+            let moving = (from..=to).all(|index| drive.motion.value[index].abs() > SLOWEST_M_S);
             let back = (after - before).abs() < SAME * before.abs().max(after.abs());
             let leaps = before.abs().min(after.abs()) > leap;
             if values[from] == 0.0 && moving && back && leaps && time_s[to] - time_s[from] < LONGEST_S {

@@ -189,7 +189,8 @@ pub fn stuck(drives: &[Recorded], name: &str, usable: &mut [Vec<bool>]) -> Optio
         let own_noise = noisy(values, &equal);
         noisy_everywhere &= own_noise || renews(values);
         let (leaps, waits) = (leaping(values), waits(values));
-        let moving: Vec<bool> = drive.motion.value.iter().map(|speed_m_s| *speed_m_s > SLOWEST_M_S).collect();
+        let moving: Vec<bool> =
+            drive.motion.value.iter().map(|speed_m_s| speed_m_s.abs() > SLOWEST_M_S).collect();
         let mut long = stuck_while(&moving, time_s, (values, &equal), own_noise, &leaps);
         long.retain(|(from, to)| !waits || leaps(*from, *to));
         if long.is_empty() {

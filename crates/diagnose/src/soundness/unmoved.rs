@@ -59,7 +59,7 @@ fn blocks(run: &Recorded) -> Vec<(f64, f64)> {
     let driven = |index: usize| {
         force[index].is_finite()
             && force[index] != 0.0
-            && run.motion.value[index] > SLOWEST_M_S
+            && run.motion.value[index].abs() > SLOWEST_M_S
             && run.acceleration_m_s2[index].is_finite()
     };
     let mut all = Vec::new();

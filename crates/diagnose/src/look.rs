@@ -10,7 +10,7 @@ use crate::choosing::built;
 use crate::choosing::built::Early;
 use crate::choosing::contest::Contest;
 use crate::choosing::search::{
-    Accepted, Found, LEAST_GAIN, MOST_CAUSES, PER_CAUSE, search, search_without, worth,
+    Accepted, Found, LEAST_GAIN, MOST_CAUSES, PER_CAUSE, concluded, search, search_without, worth,
 };
 use crate::choosing::sharpen;
 use crate::choosing::state::{Part, Stand, State};
@@ -53,7 +53,14 @@ impl Look {
             let told = from(&state, &parts).and_then(|(first, best)| state.grown(first, best, &self.found));
             told.ok_or_else(|| DiagnoseError::NoBalance { channels: case.channels() })?
         } else {
-            searched(case, &system, &pool)?
+            let before = again(case, &system, &mut pool, &self.found.stand.parts)?;
+            let several = self.found.several.as_ref().map_or(&[][..], |stand| &stand.parts);
+            let several = again(case, &system, &mut pool, several)?;
+            let found = searched(case, &system, &pool)?;
+            let found = as_before(case, &system, &pool, (found, &before));
+            let state = State { case, system: &system, pool: &pool, fit: &case.fit };
+            let told = || state.settle(&several, &state.quiet(&found.first)).filter(|_| !several.is_empty());
+            Found { several: found.several.clone().or_else(told), ..found }
         };
         (self.system, self.pool, self.usable) = (system, pool, usable.to_vec());
         Ok(())
@@ -190,8 +197,12 @@ impl Look {
             let finer = sharpen::sharpen(case, &self.system, &mut self.pool, &self.found)?;
             let bent = bend::bend(case, &self.system, &mut self.pool, &self.found)?;
             if finer || bent {
-                self.found = searched(case, &self.system, &self.pool)?;
+                let found = searched(case, &self.system, &self.pool)?;
+                let before = self.found.stand.parts.clone();
+                self.found = as_before(case, &self.system, &self.pool, (found, &before));
             }
+            let several = sharpen::beside_each_other(case, &self.system, &mut self.pool, &self.found)?;
+            self.found = as_before(case, &self.system, &self.pool, (self.found.clone(), &several));
             let anew = windows(&self.found).iter().any(|window| !sharp.contains(window));
             if speeds(&self.found) <= before && !anew {
                 break;
@@ -285,6 +296,21 @@ fn searched(case: &Case, system: &System, pool: &Pool) -> Result<Found, Diagnose
     }
     found.unproven = unproven;
     Ok(found)
+}
+
+/// What was found, or what was found before, where that is clearly better still: sets are grown from what is best by itself, so that those
+/// of causes that only do together are not met for certain. Functions are grown anew each time.
+fn as_before(case: &Case, system: &System, pool: &Pool, (found, before): (Found, &[Part])) -> Found {
+    let state = State { case, system, pool, fit: &case.fit };
+    if before.is_empty() || before.iter().any(|part| part.spread.is_some()) {
+        return found;
+    }
+    let still = state.settle(before, &state.quiet(&found.first)).filter(|stand| {
+        worth(stand) > worth(&found.stand) + LEAST_GAIN
+            && !state.impossible(&stand.parts, &stand.estimate)
+            && state.sensible(stand)
+    });
+    still.and_then(|still| concluded(&state, still, &found)).unwrap_or(found)
 }
 
 /// The same causes by the columns of another pool, but for what was corrected meanwhile.

@@ -1,8 +1,8 @@
 //! Shapes between the points of a grid: what lies between them must not be left for another cause to explain.
 
-use crate::causes::catalogue::{Form, Term};
+use crate::causes::catalogue::{Cause, Form, Term};
 use crate::causes::trial::{Pool, Trial, add_trial};
-use crate::choosing::search::{Found, LEAST_GAIN};
+use crate::choosing::search::{Accepted, Found, LEAST_GAIN};
 use crate::choosing::state::{Part, State};
 use crate::look::MANY_ROWS;
 use crate::{Case, DiagnoseError, System};
@@ -36,11 +36,7 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
     let Some(greatest) = round.causes.first().map(|one| one.2).filter(|gain| *gain > 0.0) else {
         return Ok(false);
     };
-    let shaped = |cause: usize| {
-        let cause = &case.causes[cause];
-        let free = cause.terms.iter().any(|term| !term.linear && !term.is_held());
-        free && (cause.form == Form::Parameters || cause.by_run) && !cause.blows_by_run()
-    };
+    let shaped = |cause: usize| is_shaped(&case.causes[cause]);
     let mut chosen: Vec<(usize, Vec<f64>)> = Vec::new();
     let mut consider = |cause: usize, shape: &[f64]| {
         if shaped(cause) && !chosen.iter().any(|(own, _)| *own == cause) {
@@ -101,7 +97,6 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
             }
         }
     }
-    added |= beside_each_other(case, system, pool, found, shaped)?;
     Ok(added)
 }
 
@@ -269,24 +264,22 @@ fn best(
     moved(case, (cause, start), |shape| likeliest(case, system, pool, (cause, shape), judged))
 }
 
-/// Several causes that all runs share each at its best shape beside the others, where levels of each run were accepted: those follow
-/// what a grid leaves between its points, and would stand for all of them. Whether there was anything to add.
-fn beside_each_other(
+/// Several causes that all runs share, each at its best shape beside the others, where levels of each run were accepted: those follow
+/// what a grid leaves between its points, and would stand for all of them. Nothing where there are none.
+pub fn beside_each_other(
     case: &Case,
     system: &System,
     pool: &mut Pool,
     found: &Found,
-    shaped: impl Fn(usize) -> bool,
-) -> Result<bool, DiagnoseError> {
-    let by_run =
-        found.accepted.iter().any(|one| one.function.is_some() && case.causes[one.trial.cause].by_run);
-    let Some(stand) = found.several.as_ref().filter(|_| by_run) else { return Ok(false) };
+) -> Result<Vec<Part>, DiagnoseError> {
+    let by_run = |one: &Accepted| one.function.is_some() && case.causes[one.trial.cause].by_run;
+    let stand = found.several.as_ref().filter(|_| found.accepted.iter().any(by_run));
+    let Some(stand) = stand else { return Ok(Vec::new()) };
     let noises = State { case, system, pool, fit: &case.fit }.quiet(stand);
     let mut parts = stand.parts.clone();
-    let mut added = false;
     for place in 0..parts.len() {
         let own = parts[place].trial.clone();
-        if !shaped(own.cause) {
+        if !is_shaped(&case.causes[own.cause]) {
             continue;
         }
         let judged = |state: &State, trial: &Trial| {
@@ -296,17 +289,19 @@ fn beside_each_other(
         };
         let with = |shape: &[f64]| likeliest(case, system, pool, (own.cause, shape), judged);
         let shape = moved(case, (own.cause, &own.shape), with)?;
-        if shape == own.shape {
-            continue;
-        }
-        let before = pool.trials.len();
+        let trials = pool.trials.len();
         add_trial(case, system, pool, own.cause, &shape)?;
-        if let Some(trial) = pool.trials[before..].iter().find(|trial| trial.terms == own.terms) {
+        if let Some(trial) = pool.trials[trials..].iter().find(|trial| trial.terms == own.terms) {
             parts[place].trial = trial.clone();
         }
-        added = true;
     }
-    Ok(added)
+    Ok(parts)
+}
+
+/// Whether a cause has a shape that is looked for.
+fn is_shaped(cause: &Cause) -> bool {
+    let free = cause.terms.iter().any(|term| !term.linear && !term.is_held());
+    free && (cause.form == Form::Parameters || cause.by_run) && !cause.blows_by_run()
 }
 
 /// The likeliest shape of a cause that is reached by moving one parameter at a time.

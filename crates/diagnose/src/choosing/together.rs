@@ -21,8 +21,14 @@ const LESS: f64 = 0.7;
 /// And where what lasts of it is so many times what is usual.
 const UNUSUAL: f64 = 100.0;
 
-/// A set of causes, and how good it is at a noise.
-type Scored = (f64, Vec<Part>);
+/// A set of causes.
+struct Grown {
+    parts: Vec<Part>,
+    /// How good it is at a noise.
+    score: f64,
+    /// Whether each of them is what it can be.
+    possible: bool,
+}
 
 impl State<'_> {
     /// Sets of at least two causes more than `start` has, each with the noise that it leaves; none where there are many rows,
@@ -58,19 +64,13 @@ impl State<'_> {
         let mut open: Vec<Vec<Part>> = vec![start];
         let mut all: Vec<Vec<Part>> = Vec::new();
         while open.first().is_some_and(|parts| parts.len() < MOST_CAUSES) {
-            let mut grown: Vec<Scored> = Vec::new();
+            let mut grown: Vec<Grown> = Vec::new();
             for parts in &open {
                 let Some(reduced) = self.reduced(noises, parts) else { continue };
-                let mut own = self.one_more(parts, &reduced, banned);
-                own.sort_by(|one, other| other.0.total_cmp(&one.0));
-                dedup(&mut own, |part| self.id(&part.trial));
-                own.truncate(beam);
+                let own = self.foremost(self.one_more(parts, &reduced, banned), beam);
                 grown.extend(own.into_iter().map(|one| self.reshaped(one, &reduced)));
             }
-            grown.sort_by(|one, other| other.0.total_cmp(&one.0));
-            dedup(&mut grown, |part| self.id(&part.trial));
-            grown.truncate(beam);
-            open = grown.into_iter().map(|(_, parts)| parts).collect();
+            open = self.foremost(grown, beam).into_iter().map(|one| one.parts).collect();
             if open.first().is_some_and(|parts| parts.len() > few) {
                 all.extend(open.iter().cloned());
             }
@@ -96,8 +96,30 @@ impl State<'_> {
         trials.filter_map(part).collect()
     }
 
+    /// The best sets, one of the same causes, and half as many again of those that are not possible: two that all but cancel each other are
+    /// likelier than most, and leave no room; and what cannot be by itself may be beside another.
+    fn foremost(&self, mut sets: Vec<Grown>, beam: usize) -> Vec<Grown> {
+        sets.sort_by(|one, other| other.score.total_cmp(&one.score));
+        let mut known: Vec<Vec<&str>> = Vec::new();
+        sets.retain(|set| {
+            let mut ids: Vec<&str> = set.parts.iter().map(|part| self.id(&part.trial)).collect();
+            ids.sort_unstable();
+            let new = !known.contains(&ids);
+            known.push(ids);
+            new
+        });
+        let (mut room, mut others) = (beam, beam / 2);
+        sets.retain(|set| {
+            let left = if set.possible { &mut room } else { &mut others };
+            let stays = *left > 0;
+            *left = left.saturating_sub(1);
+            stays
+        });
+        sets
+    }
+
     /// Sets with one cause more that is no function, in each of its shapes, at the noise of `reduced`.
-    fn one_more(&self, parts: &[Part], reduced: &Reduced, banned: &[&str]) -> Vec<Scored> {
+    fn one_more(&self, parts: &[Part], reduced: &Reduced, banned: &[&str]) -> Vec<Grown> {
         let taken = |cause: &Cause| {
             cause.is_banned(banned) || parts.iter().any(|part| self.id(&part.trial) == cause.id)
         };
@@ -114,33 +136,33 @@ impl State<'_> {
 
     /// A set with each of its causes in the shape that suits best beside the others: what was taken first took the shape that stands for
     /// what came later as well.
-    fn reshaped(&self, (score, parts): Scored, reduced: &Reduced) -> Scored {
+    fn reshaped(&self, set: Grown, reduced: &Reduced) -> Grown {
         /// Shapes that depend on each other are found in turns.
         const TURNS: usize = 3;
-        let mut best = (score, parts);
+        let mut best = set;
         for _ in 0..TURNS {
-            let before = best.0;
-            for place in 0..best.1.len() {
-                let own = best.1[place].clone();
+            let before = best.score;
+            for place in 0..best.parts.len() {
+                let own = best.parts[place].clone();
                 if own.spread.is_some() {
                     continue;
                 }
                 let alike = self.pool.trials.iter().filter(|trial| {
-                    trial.cause == own.trial.cause
-                        && trial.terms == own.trial.terms
-                        && trial.shape != own.trial.shape
+                    let other = &own.trial;
+                    trial.cause == other.cause && trial.terms == other.terms && trial.shape != other.shape
                 });
                 let with = |trial: &Trial| {
-                    let mut parts = best.1.clone();
+                    let mut parts = best.parts.clone();
                     parts[place].trial = trial.clone();
                     self.scored(parts, reduced)
                 };
-                let top = alike.filter_map(with).max_by(|one, other| one.0.total_cmp(&other.0));
-                if let Some(top) = top.filter(|top| top.0 > best.0) {
+                let better = |one: &Grown| one.score > best.score && one.possible >= best.possible;
+                let able = alike.filter_map(with).filter(better);
+                if let Some(top) = able.max_by(|one, other| one.score.total_cmp(&other.score)) {
                     best = top;
                 }
             }
-            if best.0 <= before {
+            if best.score <= before {
                 break;
             }
         }
@@ -148,22 +170,11 @@ impl State<'_> {
     }
 
     /// A set, and how good it is at the noise of `reduced`.
-    fn scored(&self, parts: Vec<Part>, reduced: &Reduced) -> Option<Scored> {
+    fn scored(&self, parts: Vec<Part>, reduced: &Reduced) -> Option<Grown> {
         let columns = self.columns(&parts);
         let estimate = reduced.estimate(&columns, &self.sd())?;
         let score = estimate.log_evidence + self.heavy(&columns, &estimate.beta) - self.choices(&parts);
-        Some((score, parts))
+        let possible = !self.impossible(&parts, &estimate);
+        Some(Grown { parts, score, possible })
     }
-}
-
-/// Of sets of the same causes only the first stays.
-fn dedup<'a>(sets: &mut Vec<Scored>, id: impl Fn(&Part) -> &'a str) {
-    let mut known: Vec<Vec<&str>> = Vec::new();
-    sets.retain(|(_, parts)| {
-        let mut ids: Vec<&str> = parts.iter().map(&id).collect();
-        ids.sort_unstable();
-        let new = !known.contains(&ids);
-        known.push(ids);
-        new
-    });
 }

@@ -209,6 +209,9 @@ fn brakes_beside_a_limit_leave_nothing_behind() {
     assert_eq!(told, ["regeneration_limit"], "{}", said.answer);
     let efficiency = said.calibrated.iter().find(|one| one.name == "drive_efficiency").unwrap();
     assert!((efficiency.value - EFFICIENCY).abs() < 0.005, "{efficiency:?}");
+    // How strong they are while they last is followed, and so are those too weak to be told without the limit.
+    let held = said.fit.held_out.as_ref().unwrap();
+    assert!(held.rmse_after < 3.0 * held.noise, "{held:?}");
 }
 
 /// Where nobody recorded a torque the power alone tells of the limit, and it is no load that comes and goes.

@@ -268,3 +268,71 @@ fn a_force_whose_clock_runs_slow_is_no_brake() {
     let found = found_of_scenario(&text, &slow, &Options::default(), &registry).unwrap();
     assert_eq!(ids(&found), ["clock_drift"], "{}", found.diagnosis.answer);
 }
+
+/// Nine passes to and fro over ground that firms, on a slope of which no map knows: levels of each run follow all of it, and say less.
+#[test]
+fn passes_on_a_slope_are_no_levels_of_each_run() {
+    /// Between two points of the grid of factors.
+    const FACTOR: f64 = 0.62;
+    const GRADE: f64 = 0.011;
+    let mut all: Option<Recording> = None;
+    for pass in 1..=9_usize {
+        let reversed = pass % 2 == 0;
+        let grade = if reversed { -GRADE } else { GRADE };
+        let hidden = format!(
+            "multipass(coefficient: 0.034, factor: {FACTOR:?}, pass: {pass}.0), grade_constant(grade: {grade:?})"
+        );
+        let mut one = recorded(0.069, &hidden);
+        let mut run = one.runs.swap_remove(usize::from(reversed));
+        (run.id, run.reversed, run.held_out) = (format!("r{pass}"), reversed, [3, 6].contains(&pass));
+        all.get_or_insert_with(|| Recording { runs: Vec::new(), ..one }).runs.push(run);
+    }
+    let found = found(&all.unwrap(), &Options::default()).unwrap();
+    let mut told = ids(&found);
+    told.sort_unstable();
+    assert_eq!(told, ["grade_constant", "multipass"], "{}", found.diagnosis.answer);
+    let value = |id: &str, name: &str| {
+        let one = found.diagnosis.findings.iter().find(|one| one.id == id).unwrap();
+        one.parameters.iter().find(|one| one.name == name).unwrap().value
+    };
+    assert!((value("multipass", "factor") - FACTOR).abs() < 0.02, "{}", found.diagnosis.answer);
+    assert!((value("grade_constant", "grade") - GRADE).abs() < 0.001, "{}", found.diagnosis.answer);
+}
+
+/// Backward a vehicle accelerates as forward. Where the acceleration of short spurts was not the one that force and resistance make, 520 kg
+/// on a loader that shuttles were told as a force sensor's scale.
+#[test]
+fn a_mass_is_told_backward_as_it_is_forward() {
+    const EXTRA_KG: f64 = 1500.0;
+    let shuttle = |effects: &str| {
+        let text = scenario(0.069, effects, "");
+        let (before, rest) = text.split_once("cycle: [").unwrap();
+        let (_, after) = rest.split_once("effects: [").unwrap();
+        let spurt = |speed: f64| {
+            format!(
+                "Reach(speed_m_s: {speed:?}, acceleration_m_s2: 1.2), Hold(for_s: 3), \
+                 Reach(speed_m_s: 0.8, acceleration_m_s2: 1.2), Hold(for_s: 2), "
+            )
+        };
+        let cycle: String = [2.0, 3.5, 2.5, 4.0, 1.8, 3.0, 2.2, 3.8].into_iter().map(spurt).collect();
+        format!("{before}cycle: [{cycle}], effects: [{after}")
+    };
+    let registry = headland_stock::registry();
+    let hidden = shuttle(&format!("mass(extra_mass_kg: {EXTRA_KG:?})"));
+    let channels = ["speed_m_s", "tractive_force_n"];
+    let noisy = |name: &str, value: f64, draws: &mut Draws| {
+        value + draws.normal() * if name == "speed_m_s" { 0.02 } else { 100.0 }
+    };
+    let told_kg = |way: f64| {
+        let sensor = |name: &str, value: f64, draws: &mut Draws| way * noisy(name, value, draws);
+        let recording = recording_of_scenario(&hidden, &registry, &channels, (3, &sensor));
+        let found = found_of_scenario(&shuttle(""), &recording, &Options::default(), &registry).unwrap();
+        let mass = found.diagnosis.findings.iter().find(|one| one.id == "mass");
+        mass.unwrap_or_else(|| panic!("{}", found.diagnosis.answer)).parameters[0].clone()
+    };
+    let (forward, backward) = (told_kg(1.0), told_kg(-1.0));
+    for told in [&forward, &backward] {
+        assert!(told.ci95[0] < EXTRA_KG && EXTRA_KG < told.ci95[1], "{told:?}");
+    }
+    assert!((backward.value / forward.value - 1.0).abs() < 0.02, "{forward:?} {backward:?}");
+}

@@ -5,7 +5,8 @@
 //! late speed does; a load that comes and goes in time follows what goes with the acceleration; another scale of a force or a
 //! speed is all that goes with it, before a law that nobody listed can say what is missing, since sensors come first; and a
 //! listed cause that goes about as a law does hides that law from causes that stand beside it alone. A wind beside one that was
-//! recorded makes up for what that is not at the vehicle. A search that begins with one of them may not come back. Where one is claimed and looks like that, by lying off nought all along, by standing beside
+//! recorded makes up for what that is not at the vehicle. A search that begins with one of them may not come back. Where one is claimed
+//! and looks like that, by lying off nought all along, by standing beside
 //! physics or by leaving more than noise, the runs are looked at once more without it, and the runs that were held out decide.
 
 use crate::choosing::rivals::twin;
@@ -14,6 +15,8 @@ use crate::{DiagnoseError, Options};
 
 /// What is free to be almost anything.
 const MAP: &str = "soft_ground";
+/// Maps of roads that were driven one way, or by one run each, are each other's name.
+const SLOPES: &str = "grade";
 /// What is late by the clock.
 const CLOCK: &str = "clock_drift";
 /// What is late all along, which a clock that runs apart does the rest of.
@@ -34,6 +37,8 @@ const MORE_THAN_NOISE: f64 = 1.5;
 const MUCH_MORE: f64 = 4.0;
 /// The error with another set of causes has to be less than this share of what it is with the first.
 const BETTER: f64 = 0.85;
+/// And this one without any map of the road: slopes are there, and few recordings foretell those of another road.
+const FAR_BETTER: f64 = 0.25;
 
 /// What the runs are to be looked at without, one after the other, the doubtful one first: of some findings that leave so many times the
 /// noise.
@@ -56,8 +61,14 @@ fn doubtful(findings: &[FindingReport], lack_of_fit: f64) -> Vec<Vec<String>> {
         .filter(|_| clock.is_none());
     let is_course = |load: &FindingReport| load.parameters.iter().any(|one| one.name.ends_with("_rms"));
     let load = (lack_of_fit > MUCH_MORE && found(LOAD).is_some_and(is_course)).then_some(LOAD);
+    // What goes with something else that was recorded, such as the pressure of the tyres, is a map of each road as well.
+    let either = |id: &str, other: &str| {
+        found(id).is_some_and(|map| map.indistinguishable_from.iter().any(|one| one.id == other))
+    };
+    let maps =
+        (lack_of_fit > MUCH_MORE && (either(MAP, SLOPES) || either(SLOPES, MAP))).then(|| vec![MAP, SLOPES]);
     let known = map.into_iter().chain(clock).chain(scales).chain(load).map(|id| vec![id]);
-    let known: Vec<Vec<&str>> = known.chain(both).chain(late).collect();
+    let known: Vec<Vec<&str>> = known.chain(both).chain(late).chain(maps).collect();
     // What a law may say as well, and leaves as much, hides the law that says it all.
     let by_law = |finding: &&FindingReport| {
         finding.kind == FindingKind::Physics
@@ -90,6 +101,13 @@ fn is_better(id: &str, other: &Diagnosis, first: &Diagnosis) -> bool {
         && other.fit.signal == first.fit.signal
         && held_out < BETTER * held_out_first
         && fitted < fitted_first * if id == MAP { FOLLOWS } else { 1.0 }
+}
+
+/// Whether the runs held out are told far better.
+fn is_far_better(other: &Diagnosis, first: &Diagnosis) -> bool {
+    let left = measure(other, first);
+    let held_out = |one: &Diagnosis| one.fit.held_out.as_ref().map(left);
+    held_out(other).zip(held_out(first)).is_some_and(|(other, first)| other < FAR_BETTER * first)
 }
 
 /// By what two sets of causes are measured: the error that is left where one signal tells of both, and else its share of that before.
@@ -151,7 +169,12 @@ pub fn opinion(
     for ids in doubtful(findings, lack_of_fit).into_iter().chain(wind) {
         let without = options.without.iter().chain(&ids).cloned().collect();
         match look(&Options { without, ..options.clone() }) {
-            Ok(other) if wins(&ids[0], &other.diagnosis, &best.diagnosis) => best = other,
+            Ok(other)
+                if wins(&ids[0], &other.diagnosis, &best.diagnosis)
+                    && (ids != [MAP, SLOPES] || is_far_better(&other.diagnosis, &best.diagnosis)) =>
+            {
+                best = other;
+            }
             // Nothing else may have been asked for.
             Ok(_) | Err(DiagnoseError::NoBalance { .. }) => {}
             Err(error) => return Err(error),
@@ -163,7 +186,7 @@ pub fn opinion(
 #[cfg(test)]
 mod tests {
     use super::{
-        CLOCK, LATE, LAW, LEVEL, LOAD, MAP, SCALES, WIND, blown, doubtful, is_plainer, is_renamed,
+        CLOCK, LATE, LAW, LEVEL, LOAD, MAP, SCALES, SLOPES, WIND, blown, doubtful, is_plainer, is_renamed,
         leaves_more,
     };
     use crate::told::report::FindingKind::{Artefact, Physics};
@@ -212,6 +235,16 @@ mod tests {
         assert!(doubtful(&oil(LAW), 3.0).is_empty() && doubtful(&oil("rolling_temperature"), 9.0).is_empty());
         // One look without a map is enough.
         assert_eq!(doubtful(&[finding(Physics, MAP, Some(LAW))], 9.0), [[MAP]]);
+    }
+
+    /// What went with the pressure of the tyres was told as the ground of nine roads, with 55 times the noise left in two others.
+    #[test]
+    fn maps_that_go_by_either_name_and_leave_much_are_doubted_together() {
+        let map = |id: &str, rival: &str| [finding(Physics, id, Some(rival))];
+        assert_eq!(doubtful(&map(SLOPES, MAP), 9.0), [[MAP, SLOPES]]);
+        assert_eq!(doubtful(&map(MAP, SLOPES), 9.0), [vec![MAP], vec![MAP, SLOPES]]);
+        assert!(doubtful(&map(SLOPES, MAP), 3.0).is_empty());
+        assert!(doubtful(&[finding(Physics, SLOPES, None)], 9.0).is_empty());
     }
 
     /// A lug of 12 kN was told as a late speed, a wave that fades with time and slopes.

@@ -245,6 +245,29 @@ fn a_late_speed_is_told_beside_a_drag() {
     assert!(named(&found, "latency") && named(&found, "neutral_drag"), "{}", found.diagnosis.answer);
 }
 
+/// A torque of three tenths of a second before was told as a speed that arrives late, by less than nothing.
+#[test]
+fn a_late_torque_is_told_as_that() {
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        _ => value + draws.normal(),
+    };
+    let channels = ["speed_m_s", "motor_torque_n_m"];
+    let registry = headland_stock::registry();
+    let sound = recording_of((0.069, ""), &registry, &channels, (29, &noisy));
+    let late = changed(&sound, "motor_torque_n_m", |_, trace, index| {
+        trace.get("motor_torque_n_m").unwrap()[index.saturating_sub(6)]
+    });
+    let found = found(&late, &Options::default()).unwrap();
+    let [latency] = &found.diagnosis.findings[..] else { panic!("{}", found.diagnosis.answer) };
+    assert!(
+        latency.sentence.contains("a torque that arrives late against the speed"),
+        "{}",
+        latency.sentence
+    );
+    assert!((latency.parameters[0].value + 0.3).abs() < 0.05, "{:?}", latency.parameters);
+}
+
 /// The clock of a force falls behind by up to half a second: where the force of braking sets in late, nobody braked.
 #[test]
 fn a_force_whose_clock_runs_slow_is_no_brake() {

@@ -84,11 +84,13 @@ pub fn late(case: &Case, latency_s: f64) -> &'static str {
 /// A cause told of the channel that it is a fault of: a speed that comes early is a force that comes late.
 fn of_its_channel(case: &Case, cured: &Cured) -> Cured {
     let mut own = cured.clone();
-    if let ("latency", Some((value, ci))) = (own.cause.id, own.values.first_mut())
-        && late(case, *value) != "speed_m_s"
-    {
-        (*value, *ci) = (-*value, [-ci[1], -ci[0]]);
-        own.cause.words = "a force that arrives late";
+    if let ("latency", Some((value, ci))) = (own.cause.id, own.values.first_mut()) {
+        if late(case, *value) != "speed_m_s" {
+            (*value, *ci) = (-*value, [-ci[1], -ci[0]]);
+            own.cause.words = "a force that arrives late";
+        } else if *value < 0.0 {
+            own.cause.words = "a torque that arrives late against the speed, and all that is logged with it";
+        }
     }
     own
 }

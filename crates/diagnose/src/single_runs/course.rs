@@ -36,7 +36,7 @@ pub fn steps(event: &Event, seen: &[(f64, f64)], (noise_n, window_s): (f64, f64)
                 Some(*sum)
             }))
             .collect(),
-        shortest: (window_s / lasts_s * seen.len() as f64).ceil().max(1.0) as usize,
+        shortest: seen.iter().filter(|(time_s, _)| *time_s < seen[0].0 + window_s).count(),
         known: noise_n * noise_n * window_s / lasts_s * seen.len() as f64,
     };
     let mut ends = Vec::new();

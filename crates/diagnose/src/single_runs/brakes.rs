@@ -139,7 +139,10 @@ pub fn standing(
             let explained_n = mean_within(event, run, &nominal_n) - mean_n;
             let told_before = braked.contains(event) && explained_n.is_finite();
             let force_n = event.force_n - if told_before { explained_n } else { 0.0 };
-            standing.push(Event { force_n, ..event.clone() });
+            // A brake that would have to drive is none.
+            if force_n > 0.0 {
+                standing.push(Event { force_n, ..event.clone() });
+            }
         }
         standing.extend(weak);
         let window_s = averaged_over_s(run.measured.trace.time_s());

@@ -68,8 +68,8 @@ pub fn diagnose(
     progress: &dyn Progress,
 ) -> Result<Diagnosed, DiagnoseError> {
     let look = |options: &Options| diagnose_once(scenario, recording, registry, options, progress);
-    let wind_known = recording.runs.iter().any(|run| run.trace.get("wind_speed_m_s").is_some());
-    second::opinion(look(options)?, options, wind_known, look)
+    let known = |name: &str| recording.runs.iter().any(|run| run.trace.get(name).is_some());
+    second::opinion(look(options)?, options, known, look)
 }
 
 /// Brakes are looked for so many times more, once a delay was found.

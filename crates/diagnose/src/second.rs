@@ -61,14 +61,8 @@ fn doubtful(findings: &[FindingReport], lack_of_fit: f64) -> Vec<Vec<String>> {
         .filter(|_| clock.is_none());
     let is_course = |load: &FindingReport| load.parameters.iter().any(|one| one.name.ends_with("_rms"));
     let load = (lack_of_fit > MUCH_MORE && found(LOAD).is_some_and(is_course)).then_some(LOAD);
-    // What goes with something else that was recorded, such as the pressure of the tyres, is a map of each road as well.
-    let either = |id: &str, other: &str| {
-        found(id).is_some_and(|map| map.indistinguishable_from.iter().any(|one| one.id == other))
-    };
-    let maps =
-        (lack_of_fit > MUCH_MORE && (either(MAP, SLOPES) || either(SLOPES, MAP))).then(|| vec![MAP, SLOPES]);
     let known = map.into_iter().chain(clock).chain(scales).chain(load).map(|id| vec![id]);
-    let known: Vec<Vec<&str>> = known.chain(both).chain(late).chain(maps).collect();
+    let known: Vec<Vec<&str>> = known.chain(both).chain(late).collect();
     // What a law may say as well, and leaves as much, hides the law that says it all.
     let by_law = |finding: &&FindingReport| {
         finding.kind == FindingKind::Physics
@@ -86,6 +80,16 @@ fn doubtful(findings: &[FindingReport], lack_of_fit: f64) -> Vec<Vec<String>> {
 fn blown(findings: &[FindingReport], lack_of_fit: f64) -> Option<Vec<String>> {
     let among = findings.len() > 1 && findings.iter().any(|finding| finding.id == WIND);
     (among && lack_of_fit > MORE_THAN_NOISE).then(|| vec![WIND.to_owned()])
+}
+
+/// Both maps of a road, where either name would do for what leaves much: what goes with the pressure of the tyres is a map of each road too.
+fn mapped(findings: &[FindingReport], lack_of_fit: f64) -> Option<Vec<String>> {
+    let either = |id: &str, other: &str| {
+        let rival = |map: &FindingReport| map.indistinguishable_from.iter().any(|rival| rival.id == other);
+        findings.iter().any(|finding| finding.id == id && rival(finding))
+    };
+    let doubted = lack_of_fit > MUCH_MORE && (either(MAP, SLOPES) || either(SLOPES, MAP));
+    doubted.then(|| vec![MAP.to_owned(), SLOPES.to_owned()])
 }
 
 /// A map follows the runs that it was made of; what stands in its place may leave so many times the error in those.
@@ -155,18 +159,19 @@ fn is_renamed(id: &str, others: &[FindingReport], first: &[FindingReport]) -> bo
     first.iter().any(named) && others.iter().any(|finding| finding.id == twin)
 }
 
-/// The first opinion, or one without what is doubtful in it where that is better; a wind is where `wind_known`. `look` looks with other
-/// options.
+/// The first opinion, or one without what is doubtful in it where that is better; a wind is where a wind was recorded, and both maps are
+/// where the pressure of the tyres was, which no listed cause hangs on. `look` looks with other options.
 pub fn opinion(
     first: Diagnosed,
     options: &Options,
-    wind_known: bool,
+    known: impl Fn(&str) -> bool,
     look: impl Fn(&Options) -> Result<Diagnosed, DiagnoseError>,
 ) -> Result<Diagnosed, DiagnoseError> {
     let mut best = first;
     let (findings, lack_of_fit) = (&best.diagnosis.findings, best.diagnosis.fit.lack_of_fit);
-    let wind = blown(findings, lack_of_fit).filter(|_| wind_known);
-    for ids in doubtful(findings, lack_of_fit).into_iter().chain(wind) {
+    let wind = blown(findings, lack_of_fit).filter(|_| known("wind_speed_m_s"));
+    let maps = mapped(findings, lack_of_fit).filter(|_| known("tyre_pressure_pa"));
+    for ids in doubtful(findings, lack_of_fit).into_iter().chain(wind).chain(maps) {
         let without = options.without.iter().chain(&ids).cloned().collect();
         match look(&Options { without, ..options.clone() }) {
             Ok(other)
@@ -187,7 +192,7 @@ pub fn opinion(
 mod tests {
     use super::{
         CLOCK, LATE, LAW, LEVEL, LOAD, MAP, SCALES, SLOPES, WIND, blown, doubtful, is_plainer, is_renamed,
-        leaves_more,
+        leaves_more, mapped,
     };
     use crate::told::report::FindingKind::{Artefact, Physics};
     use crate::told::report::{ParameterReport, finding};
@@ -241,10 +246,10 @@ mod tests {
     #[test]
     fn maps_that_go_by_either_name_and_leave_much_are_doubted_together() {
         let map = |id: &str, rival: &str| [finding(Physics, id, Some(rival))];
-        assert_eq!(doubtful(&map(SLOPES, MAP), 9.0), [[MAP, SLOPES]]);
-        assert_eq!(doubtful(&map(MAP, SLOPES), 9.0), [vec![MAP], vec![MAP, SLOPES]]);
-        assert!(doubtful(&map(SLOPES, MAP), 3.0).is_empty());
-        assert!(doubtful(&[finding(Physics, SLOPES, None)], 9.0).is_empty());
+        assert_eq!(mapped(&map(SLOPES, MAP), 9.0).unwrap(), [MAP, SLOPES]);
+        assert_eq!(mapped(&map(MAP, SLOPES), 9.0).unwrap(), [MAP, SLOPES]);
+        assert!(mapped(&map(SLOPES, MAP), 3.0).is_none());
+        assert!(mapped(&[finding(Physics, SLOPES, None)], 9.0).is_none());
     }
 
     /// A lug of 12 kN was told as a late speed, a wave that fades with time and slopes.

@@ -59,7 +59,8 @@ impl Look {
             let found = searched(case, &system, &pool)?;
             let found = as_before(case, &system, &pool, (found, &before));
             let state = State { case, system: &system, pool: &pool, fit: &case.fit };
-            let told = || state.settle(&several, &state.quiet(&found.first)).filter(|_| !several.is_empty());
+            let told =
+                || if several.is_empty() { None } else { state.settle(&several, &state.quiet(&found.first)) };
             Found { several: found.several.clone().or_else(told), ..found }
         };
         (self.system, self.pool, self.usable) = (system, pool, usable.to_vec());
@@ -202,7 +203,9 @@ impl Look {
                 self.found = as_before(case, &self.system, &self.pool, (found, &before));
             }
             let several = sharpen::beside_each_other(case, &self.system, &mut self.pool, &self.found)?;
-            self.found = as_before(case, &self.system, &self.pool, (self.found.clone(), &several));
+            if !several.is_empty() {
+                self.found = as_before(case, &self.system, &self.pool, (self.found.clone(), &several));
+            }
             let anew = windows(&self.found).iter().any(|window| !sharp.contains(window));
             if speeds(&self.found) <= before && !anew {
                 break;

@@ -75,19 +75,24 @@ fn passes_of_one_path_are_counted() {
     assert!(error_m_s < 1e-3, "{error_m_s}: {told}");
 }
 
+/// A cart of a tonne that is pulled by what it resists with another tonne on it, ten rows a second, of which some say the load.
+fn weighed(place: &Place, says: impl Fn(u32) -> bool) {
+    place.write("recording.ron", r#"(about: "a load", runs: [(id: "r1", file: "r1.csv")])"#);
+    let row = |row: u32| {
+        let payload = if says(row) { "1000" } else { "" };
+        format!("{:.1},10,{:.3},{payload}\n", 0.1 * f64::from(row), 0.02 * 2000.0 * 9.806_65)
+    };
+    let rows: String = (0..=200).map(row).collect();
+    place.write("r1.csv", &format!("time_s,speed_m_s,tractive_force_n,payload_kg\n{rows}"));
+}
+
 /// A tonne on a cart of a tonne, weighed once a second in a log of ten rows a second: it rolls on where both are pulled by
 /// what they resist.
 #[test]
 fn what_is_logged_less_often_is_told_to_the_model_too() {
     let place = Place::new();
     scenario(&place, "");
-    place.write("recording.ron", r#"(about: "a load", runs: [(id: "r1", file: "r1.csv")])"#);
-    let row = |row: u32| {
-        let payload = if row.is_multiple_of(10) { "1000" } else { "" };
-        format!("{:.1},10,{:.3},{payload}\n", 0.1 * f64::from(row), 0.02 * 2000.0 * 9.806_65)
-    };
-    let rows: String = (0..=200).map(row).collect();
-    place.write("r1.csv", &format!("time_s,speed_m_s,tractive_force_n,payload_kg\n{rows}"));
+    weighed(&place, |row| row.is_multiple_of(10));
     let (error_m_s, told) = compared(&place);
     assert!(told.contains("`payload_kg` has a new value in one row of 10"), "{told}");
     // Without it, the cart alone would be pulled by 196 N too many: 4 m/s in 20 s.
@@ -99,13 +104,7 @@ fn what_is_logged_less_often_is_told_to_the_model_too() {
 fn a_gap_in_what_drives_the_model_is_left_out_by_its_own_name() {
     let place = Place::new();
     scenario(&place, "");
-    place.write("recording.ron", r#"(about: "a load", runs: [(id: "r1", file: "r1.csv")])"#);
-    let row = |row: u32| {
-        let payload = if (50..150).contains(&row) { "" } else { "1000" };
-        format!("{:.1},10,{:.3},{payload}\n", 0.1 * f64::from(row), 0.02 * 2000.0 * 9.806_65)
-    };
-    let rows: String = (0..=200).map(row).collect();
-    place.write("r1.csv", &format!("time_s,speed_m_s,tractive_force_n,payload_kg\n{rows}"));
+    weighed(&place, |row| !(50..150).contains(&row));
     let (_, told) = compared(&place);
     assert!(told.contains("100 of 201 samples") && told.contains("longer than can be bridged"), "{told}");
     assert!(!told.contains("least_acceleration_m_s2"), "{told}");

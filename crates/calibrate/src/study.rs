@@ -550,6 +550,7 @@ fn measured(
     let reversed_from_m =
         run.reversed.then(|| trace.get("position_m").and_then(chainage_from_m).unwrap_or(length_m));
     notes.extend(beyond_the_terrain(model.terrain.extent_m(), &trace, reversed_from_m));
+    notes.extend(begun_at_the_end(model.terrain.extent_m(), &trace, reversed_from_m));
     let how = Replay {
         drive,
         also,
@@ -590,14 +591,15 @@ pub fn places_m(trace: &Trace, speeds_m_s: &[f64], reversed_from_m: Option<f64>)
     }
 }
 
+/// A place is not known better than this [m].
+const ABOUT_M: f64 = 5.0;
+
 /// What there is to say of a run that goes further than its terrain is known, of which the slope at the end goes on.
 fn beyond_the_terrain(
     extent_m: Option<(f64, f64)>,
     trace: &Trace,
     reversed_from_m: Option<f64>,
 ) -> Option<String> {
-    /// A place is not known better than this [m].
-    const ABOUT_M: f64 = 5.0;
     let (begin_m, end_m) = extent_m?;
     let places_m = places_m(trace, trace.get("speed_m_s")?, reversed_from_m);
     let places = || places_m.iter().copied().filter(|place| place.is_finite());
@@ -607,6 +609,22 @@ fn beyond_the_terrain(
         format!(
             "driven from {least_m:.0} to {most_m:.0} m of a terrain that is known from {begin_m:.0} to {end_m:.0} m: \
              beyond its ends it is taken to go on as it does there"
+        )
+    })
+}
+
+/// Where a run against its path is taken to begin, which an odometer does not know and a surveyed terrain hangs on.
+fn begun_at_the_end(
+    extent_m: Option<(f64, f64)>,
+    trace: &Trace,
+    reversed_from_m: Option<f64>,
+) -> Option<String> {
+    let (_, end_m) = extent_m?;
+    let odometer = trace.get("position_m").is_none_or(|position| chainage_from_m(position).is_none());
+    reversed_from_m.filter(|from_m| odometer && (from_m - end_m).abs() > ABOUT_M).map(|from_m| {
+        format!(
+            "no place on the path is known of runs against it: they are taken to begin at {from_m:.0} m, as far as the farthest \
+             run came, of a terrain that is known up to {end_m:.0} m"
         )
     })
 }
@@ -749,7 +767,7 @@ pub fn rms(run: &Measured, modelled: &Trace, name: &str) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{beyond_the_terrain, smoothed_s};
+    use super::{begun_at_the_end, beyond_the_terrain, smoothed_s};
     use headland_trace::{Origin, Trace};
 
     /// 60 m at 10 m/s on a profile of 50 m, and back from its end by an odometer and by a chainage.
@@ -768,6 +786,11 @@ mod tests {
         assert!(told(&grows, Some(50.0)).unwrap().contains("from -10 to 50 m"));
         assert!(told(&trace(|far| 50.0 - 0.8 * far), Some(50.0)).is_none());
         assert!(beyond_the_terrain(None, &grows, None).is_none());
+        let begun = |trace: &Trace, from_m| begun_at_the_end(Some((0.0, 50.0)), trace, from_m);
+        assert!(begun(&grows, Some(40.0)).unwrap().contains("begin at 40 m"));
+        assert!(begun(&grows, Some(50.0)).is_none(), "that is where the terrain ends");
+        assert!(begun(&grows, None).is_none(), "it goes along the path");
+        assert!(begun(&trace(|far| 40.0 - far), Some(40.0)).is_none(), "it says where it is");
         let mut unplaced = grows;
         unplaced.remove("position_m");
         assert!(told(&unplaced, None).unwrap().contains("to 60 m"));

@@ -99,6 +99,39 @@ fn what_is_logged_less_often_is_told_to_the_model_too() {
     assert!(error_m_s < 1e-3, "{error_m_s}: {told}");
 }
 
+/// A cart that is pulled over waves of 40 m at walking speed by a force that is 30 N more than it takes: soon the model meets them
+/// early, unless it begins anew from time to time.
+#[test]
+fn a_model_that_meets_slopes_early_says_so() {
+    let place = Place::new();
+    scenario(&place, "");
+    let waves =
+        |at: i32| (0.02 * 20.0 / std::f64::consts::PI) * (f64::from(at) * std::f64::consts::PI / 20.0).sin();
+    let points: String =
+        (-10..130).map(|at| format!("(position_m: {at}.0, elevation_m: {:.6}), ", waves(at))).collect();
+    let text = std::fs::read_to_string(place.path("scenario.ron")).unwrap();
+    let hilly =
+        text.replacen("terrain: Flat", &format!("terrain: Profile(heading_rad: 0, points: [{points}])"), 1);
+    assert_ne!(text, hilly, "the terrain of the tests' scenario");
+    place.write("scenario.ron", &hilly);
+    place.write("recording.ron", r#"(about: "waves", runs: [(id: "r1", file: "r1.csv")])"#);
+    let pulled_n = |at_m: f64| {
+        let grade = 0.02 * (at_m * std::f64::consts::PI / 20.0).cos();
+        1000.0 * 9.806_65 * (0.02 + grade) / grade.hypot(1.0) + 30.0
+    };
+    place.write(
+        "r1.csv",
+        &log("time_s,speed_m_s,position_m,tractive_force_n", 50, |time_s| {
+            vec![2.0, 2.0 * time_s, pulled_n(2.0 * time_s)]
+        }),
+    );
+    let (error_m_s, told) = compared(&place);
+    assert!(error_m_s > 0.3 && told.contains("the next one early: in r1"), "{error_m_s}: {told}");
+    place.write("scenario.ron", &hilly.replacen("    free:", "    replay: (window_s: 10),\n    free:", 1));
+    let (error_m_s, told) = compared(&place);
+    assert!(error_m_s < 0.3 && !told.contains("early"), "{error_m_s}: {told}");
+}
+
 /// The same log with a gap of ten seconds, which no line bridges: it is left out, and no brakes are blamed.
 #[test]
 fn a_gap_in_what_drives_the_model_is_left_out_by_its_own_name() {

@@ -49,7 +49,7 @@ pub fn foreseen(
 fn best(state: &State, found: &Found) -> Option<Found> {
     let noises = &found.first.noises;
     let before = state.foretold(&[], noises)?;
-    let mut sets = state.together(&found.stand, &[]);
+    let mut sets = state.together(&found.stand, &[], false);
     sets.sort_by(|one, other| worth(other).total_cmp(&worth(one)));
     // What neighbouring rows differ by nobody foresees.
     let quiet: Vec<f64> = state.quiet(&found.first).each.iter().map(|noise| noise.sd().powi(2)).collect();

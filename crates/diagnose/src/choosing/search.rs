@@ -168,7 +168,8 @@ pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]
         open = grown;
     }
     let mut several: Option<Stand> = None;
-    for stand in state.together(&first, banned) {
+    let by_run = best.parts.iter().any(|part| state.cause(&part.trial).by_run);
+    for stand in state.together(&first, banned, by_run) {
         if worth(&stand) > worth(&best) + LEAST_GAIN {
             best = stand.clone();
         }

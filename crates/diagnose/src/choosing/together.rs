@@ -31,9 +31,10 @@ struct Grown {
 }
 
 impl State<'_> {
-    /// Sets of at least two causes more than `start` has, each with the noise that it leaves; none where there are many rows,
-    /// which take long and tell causes one by one.
-    pub fn together(&self, start: &Stand, banned: &[&str]) -> Vec<Stand> {
+    /// Sets of at least two causes more than `start` has, each with the noise that it leaves, where noise may hide some or levels of each
+    /// run were found, which crowd out every cause that is a part of them; none where there are many rows, which take long and tell
+    /// causes one by one.
+    pub fn together(&self, start: &Stand, banned: &[&str], by_run: bool) -> Vec<Stand> {
         if self.system.row_count() > MANY_ROWS {
             return Vec::new();
         }
@@ -43,7 +44,7 @@ impl State<'_> {
             let lasting = usual.is_some_and(|usual| loud.lasting() > UNUSUAL * usual);
             lasting || quiet.sd().powi(2) < LESS * loud.sd().powi(2)
         };
-        if !pairs.into_iter().any(hides) {
+        if !by_run && !pairs.into_iter().any(hides) {
             return Vec::new();
         }
         let mut all = self.grown_from(start.parts.clone(), &noises, banned, BEAM);

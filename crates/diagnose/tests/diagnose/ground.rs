@@ -5,6 +5,7 @@ use super::setting::{
 };
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{Diagnosed, Options, Verdict};
+use headland_recording::Known;
 
 /// A tractor in neutral on one lane, from eight speeds, with `effects`.
 fn coasts(effects: &str) -> String {
@@ -32,11 +33,19 @@ fn coasts(effects: &str) -> String {
     )
 }
 
+/// A study with another value of one of its runs.
+fn with(text: &str, run: usize, name: &str, value: usize) -> String {
+    let begin = format!("(id: \"c{run}\", with: {{");
+    text.replace(&begin, &format!("{begin}\"{name}\": {value}, "))
+}
+
+/// A speed that is known to 0.03 m/s.
+fn noisy(name: &str, value: f64, draws: &mut Draws) -> f64 {
+    if name == "speed_m_s" { value + 0.03 * draws.normal() } else { value }
+}
+
 fn found(hidden: &str) -> Diagnosed {
     let registry = headland_stock::registry();
-    let noisy = |name: &str, value: f64, draws: &mut Draws| {
-        if name == "speed_m_s" { value + 0.03 * draws.normal() } else { value }
-    };
     let channels = ["speed_m_s", "position_m"];
     let recording = recording_of_scenario(&coasts(hidden), &registry, &channels, (29, &noisy));
     found_of_scenario(&coasts(""), &recording, &Options::default(), &registry).unwrap()
@@ -65,28 +74,58 @@ fn a_map_that_lies_off_nought_all_along_names_the_level_beside_it() {
     }
 }
 
-/// Passes that leave little to resist: a level of its own in each run says as much, and teaches no run the next one. Beside what was
-/// found already no regressor may ask for less than nothing.
-#[test]
-fn ground_that_firms_to_next_to_nothing_is_no_level_of_each_run() {
-    const FACTOR: f64 = 0.6;
+/// Passes of which each one changes the resistance by a factor: a level of its own in each run says as much, and teaches no run the next
+/// one. Beside what was found already no regressor may ask for less than nothing.
+fn passes_are_told(factor: f64) {
     let registry = headland_stock::registry();
-    let passes = format!("multipass(coefficient: 0.021, factor: {FACTOR:?}, pass: 1)");
-    let of_pass = |text: String, run: usize| {
-        let with = |pass: usize| format!("(id: \"c{run}\", with: {{\"effects.0.pass\": {pass}, ");
-        text.replace(&format!("(id: \"c{run}\", with: {{"), &with(run + 1))
-    };
-    let hidden = (0..8).fold(coasts(&passes), of_pass);
-    let noisy = |name: &str, value: f64, draws: &mut Draws| {
-        if name == "speed_m_s" { value + 0.03 * draws.normal() } else { value }
-    };
+    let passes = format!("multipass(coefficient: 0.021, factor: {factor:?}, pass: 1)");
+    let hidden = (0..8).fold(coasts(&passes), |text, run| with(&text, run, "effects.0.pass", run + 1));
     let recording = recording_of_scenario(&hidden, &registry, &["speed_m_s", "position_m"], (29, &noisy));
     let found = found_of_scenario(&coasts(""), &recording, &Options::default(), &registry).unwrap();
     let said = &found.diagnosis;
     let [pass] = &said.findings[..] else { panic!("{}", said.answer) };
     assert_eq!(pass.id, "multipass", "{}", said.answer);
-    let factor = pass.parameters.iter().find(|one| one.name == "factor").unwrap();
-    assert!((factor.value - FACTOR).abs() < 0.05, "{factor:?}");
+    let told = pass.parameters.iter().find(|one| one.name == "factor").unwrap();
+    assert!((told.value - factor).abs() < 0.05, "{told:?}");
+}
+
+#[test]
+fn ground_that_firms_to_next_to_nothing_is_no_level_of_each_run() {
+    passes_are_told(0.6);
+}
+
+#[test]
+fn ground_that_breaks_up_is_no_level_of_each_run() {
+    passes_are_told(1.13);
+}
+
+/// Eight weighed loads, of which the resistance does not grow in proportion, on a brake that drags: levels of each run follow both, and
+/// crowd out each of them alone.
+#[test]
+fn a_load_and_a_brake_are_no_levels_of_each_run() {
+    const FORCE_N: f64 = 900.0;
+    const MASSES_KG: [usize; 8] = [13_000, 15_800, 11_000, 14_400, 10_200, 13_000, 15_800, 11_000];
+    let registry = headland_stock::registry();
+    let effects = format!(
+        "brake_drag(force_n: {FORCE_N:?}), load_dependence(exponent: 1.4, coefficient: 0.025, reference_mass_kg: 13000)"
+    );
+    let weighed = |text: String, run: usize| with(&text, run, "vehicle.mass_kg", MASSES_KG[run]);
+    let hidden = (0..8).fold(coasts(&effects), weighed);
+    let mut recording = recording_of_scenario(&hidden, &registry, &["speed_m_s", "position_m"], (29, &noisy));
+    for (run, mass_kg) in recording.runs.iter_mut().zip(MASSES_KG) {
+        run.known.push(Known { name: "mass_kg".to_owned(), value: mass_kg as f64, sd: Some(15.0) });
+    }
+    // Of a coefficient that is known to a tenth a brake would be a part.
+    let nominal = coasts("").replacen("sd: 0.003,", "sd: 0.0004,", 1);
+    let found = found_of_scenario(&nominal, &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    for id in ["brake_drag", "load_dependence"] {
+        assert!(named(&found, id), "{id}: {}", said.answer);
+    }
+    assert_eq!(said.findings.len(), 2, "{}", said.answer);
+    let drag = said.findings.iter().flat_map(|one| &one.parameters).find(|one| one.name == "force_n");
+    let drag = drag.unwrap_or_else(|| panic!("{}", said.answer));
+    assert!((drag.value - FORCE_N).abs() < 150.0, "{drag:?}");
 }
 
 /// Laps of 31 m on soft ground, of which every one leaves a part of the resistance: not oil that warms up beside another level.

@@ -1,10 +1,14 @@
-//! Ground that firms with every pass: from run to run along one path, or from lap to lap within a run.
+//! Ground that firms or breaks up with every pass: from run to run along one path, or from lap to lap within a run.
 
 use super::{Around, Cause, MOTION, cause, linear, positive, shape};
 
 /// What a pass leaves of the resistance that the one before it left: between the points of so coarse a grid lies more than
 /// levels that differ from run to run leave to be told.
 const PASSED_ON: [f64; 6] = [0.95, 0.85, 0.7, 0.55, 0.4, 0.25];
+/// What every pass makes of what the one before it added, on ground that breaks up,
+const BROKEN_UP: [f64; 4] = [1.04, 1.1, 1.18, 1.3];
+/// and the most that it may.
+const MOST_BROKEN: f64 = 1.5;
 /// The same from lap to lap, of which a run has several.
 const LAPPED: [f64; 3] = [0.75, 0.5, 0.25];
 /// What a pass may leave.
@@ -29,6 +33,9 @@ pub(super) fn passes(around: &Around) -> Vec<Cause> {
         let terms = vec![linear("coefficient", "1", USUAL), shape("factor", "1")];
         let words = ("F = c (fⁿ⁻¹ − 1) N", "ground that firms with every pass");
         all.push(firms(terms, words).shaped(PASSED_ON.map(|factor| vec![factor]).into()));
+        let terms = vec![positive("coefficient", "1", USUAL), shape("factor", "1").within(1.0, MOST_BROKEN)];
+        let words = ("F = c (fⁿ⁻¹ − 1) N", "ground that breaks up with every pass");
+        all.push(firms(terms, words).shaped(BROKEN_UP.map(|factor| vec![factor]).into()));
     }
     let laps_m = laps_m(around.reach_m);
     if around.soil_coefficient > SOFT && !laps_m.is_empty() {

@@ -17,6 +17,9 @@ const UNLIKE: f64 = 0.02;
 /// Where something is as good as a cause anyway, what comes close to it is named as well: odds of one to a hundred and fifty.
 pub const TOLERANCE_IN_DOUBT: f64 = 5.0;
 
+/// A map of places that says this much of what a course of each run says stands beside it.
+const OF_PLACES: f64 = 0.7;
+
 /// A map of the ground that is the same everywhere.
 const LEVEL: &str = "rolling_resistance";
 
@@ -44,7 +47,10 @@ impl State<'_> {
             let listed = rivals.iter().any(|rival| self.case.causes[rival.cause].id == self.id(&own.trial));
             let behind = best.score - other.stand.score;
             let one_way = self.is_place_told_one_way(&side.part.trial, &own.trial);
-            let alike = behind < TOLERANCE_IN_DOUBT || one_way;
+            let gain = other.stand.score - lesser.score;
+            let shared = gain > OF_PLACES * (best.score - lesser.score)
+                && self.is_place_for_course(&side.part.trial, &own.trial);
+            let alike = behind < TOLERANCE_IN_DOUBT || one_way || shared;
             if self.id(&own.trial) == id
                 || listed
                 || !alike
@@ -52,7 +58,7 @@ impl State<'_> {
             {
                 continue;
             }
-            doubtful |= behind < TOLERANCE || one_way;
+            doubtful |= behind < TOLERANCE || one_way || shared;
             let correlation = reduced.squared_correlation(
                 &side.part.trial.columns,
                 &own.trial.columns,
@@ -61,7 +67,7 @@ impl State<'_> {
             );
             rivals.push(Rival {
                 cause: own.trial.cause,
-                gain: other.stand.score - lesser.score,
+                gain,
                 squared_correlation: correlation,
                 free: self.free_beside(&other.stand),
             });
@@ -76,6 +82,14 @@ impl State<'_> {
         self.cause(own).law.is_some()
             && other.is_course()
             && other.balances.iter().all(|kind| kind.is_power())
+    }
+
+    /// Whether one cause is a pull that takes a course of its own in each run and the other a map of places that runs share: a map says
+    /// the same of all of them, and what it says nearly as much by is hardly that by chance.
+    fn is_place_for_course(&self, own: &Trial, other: &Trial) -> bool {
+        self.cause(own).pulls_in_spells()
+            && self.cause(other).form == Form::OverPosition
+            && self.paths_shared()
     }
 
     /// Whether one cause is a law of places alone and the other a map of them, and neither was a path driven both ways nor an

@@ -228,9 +228,15 @@ impl Cause {
         self
     }
 
-    /// Before the place where the force at the wheels is told: only what powers say tells of it.
+    /// Before the place where the force at the wheels is told: only what powers say tells of it. A sheet may state too much of a loss as
+    /// well as too little, and no force that was measured has to pay for that.
     pub fn upstream(mut self) -> Self {
+        /// The most that is stated too much of it, as a share.
+        const STATED_TOO_MUCH: f64 = 0.2;
         self.balances = &[Kind::Battery, Kind::Fuel];
+        for term in self.terms.iter_mut().filter(|term| term.name == "loss") {
+            term.low = -STATED_TOO_MUCH;
+        }
         self.upstream = true;
         self
     }

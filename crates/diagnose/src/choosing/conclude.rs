@@ -198,11 +198,15 @@ impl State<'_> {
     ) -> Found {
         let gain = |side: &Side| side.lesser.as_ref().map_or(needed, |lesser| best.score - lesser.score);
         sides.sort_by(|one, other| gain(other).total_cmp(&gain(one)));
-        // What the runs do not teach each other stands for nothing that they do.
+        // What the runs do not teach each other stands for nothing that they do, but for one number in the place of another: where they teach
+        // a scale of the force, it was by chance that they did not a mass.
         let banned = self.case.ids(&unproven);
         let new = |one: &Contest| one.stand.parts.last().map(|part| self.cause(&part.trial));
         for side in &mut sides {
-            side.contests.retain(|one| new(one).is_some_and(|cause| !cause.is_banned(&banned)));
+            let number = !self.cause(&side.part.trial).is_function();
+            side.contests.retain(|one| {
+                new(one).is_some_and(|cause| !cause.is_banned(&banned) || number && !cause.is_function())
+            });
         }
         let mut accepted = Vec::new();
         let mut effects = Vec::new();

@@ -107,8 +107,8 @@ fn a_model_that_meets_slopes_early_says_so() {
     scenario(&place, "");
     let waves =
         |at: i32| (0.02 * 20.0 / std::f64::consts::PI) * (f64::from(at) * std::f64::consts::PI / 20.0).sin();
-    let points: String =
-        (-10..130).map(|at| format!("(position_m: {at}.0, elevation_m: {:.6}), ", waves(at))).collect();
+    let point = |at: i32| format!("(position_m: {at}.0, elevation_m: {:.6}), ", waves(at));
+    let points = (-10..130).map(point).collect::<Vec<_>>().concat();
     let text = std::fs::read_to_string(place.path("scenario.ron")).unwrap();
     let hilly =
         text.replacen("terrain: Flat", &format!("terrain: Profile(heading_rad: 0, points: [{points}])"), 1);

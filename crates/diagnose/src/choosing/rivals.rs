@@ -23,6 +23,10 @@ const OF_PLACES: f64 = 0.7;
 /// A map of the ground that is the same everywhere.
 const LEVEL: &str = "rolling_resistance";
 
+/// What blows, and what it blows at.
+const WIND: &str = "wind";
+const AIR: &str = "aerodynamic_drag";
+
 /// What pulls for a while.
 const PULL: &str = "drawbar_load";
 
@@ -39,6 +43,11 @@ impl State<'_> {
     /// Causes that explain as much in the place of one.
     pub fn rivals(&self, best: &Stand, side: &Side) -> Vec<Rival> {
         let (id, Some(lesser)) = (self.id(&side.part.trial), &side.lesser) else { return Vec::new() };
+        // What the air does was made in the wind that was found: without it, it would blow there still, by another area.
+        let blows = id == WIND && self.case.has_built();
+        if blows && lesser.parts.iter().any(|part| self.id(&part.trial) == AIR) {
+            return Vec::new();
+        }
         let Some(reduced) = self.reduced(&best.noises, &lesser.parts) else { return Vec::new() };
         let mut rivals: Vec<Rival> = Vec::new();
         let mut doubtful = false;

@@ -37,6 +37,17 @@ fn a_wind_along_a_lane_is_certain_whatever_blows_across() {
     assert!(low > 0.7 * SPEED_M_S && low < SPEED_M_S && SPEED_M_S < high, "{low} to {high} m/s");
 }
 
+/// A wind that meets a lane from both ends, and a roof box: the drag of the box is made in the wind that was found, and without that wind
+/// another area beside a law of speed would still blow as it did.
+#[test]
+fn a_wind_from_both_ends_is_no_law_of_speed_beside_more_drag() {
+    let hidden = "wind(speed_m_s: 6.0, from_rad: 0.5), aerodynamic_drag(extra_area_m2: 6.0)";
+    let said = found(&recorded(0.069, hidden), &Options::default()).unwrap().diagnosis;
+    let wind = said.findings.iter().find(|one| one.id == "wind").unwrap_or_else(|| panic!("{}", said.answer));
+    assert!(wind.indistinguishable_from.is_empty(), "{}", said.answer);
+    assert!(said.findings.iter().any(|one| one.id == "aerodynamic_drag"), "{}", said.answer);
+}
+
 /// What blows across the lane shows by how it bends the drag alone, and no other cause patches what columns lack of that; nor
 /// is the vehicle lighter than it is known to be, with which less would be left of any force.
 #[test]

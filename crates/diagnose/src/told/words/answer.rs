@@ -230,13 +230,17 @@ fn left_over(told: &Told) -> Option<String> {
     const MUCH: f64 = 2.0;
     let lack = told.fit.lack_of_fit;
     let noise = told.fit.noise_in_words();
+    // A signal without a noise of its own is judged by the rows of its balance, and not sample by sample as its error is.
+    let left = if told.fit.signal == "speed_m_s" {
+        "What is left"
+    } else {
+        "Of the fitted runs, row by row, what is left"
+    };
     let much = (lack.is_finite() && lack > MUCH).then(|| {
         if told.verdict == Verdict::None || !told.stands_out {
-            format!("What is left is {lack:.1} times {noise}, without a pattern that stands out.")
+            format!("{left} is {lack:.1} times {noise}, without a pattern that stands out.")
         } else {
-            format!(
-                "What is left is {lack:.1} times {noise}: there is more to it than was found, or the noise is larger."
-            )
+            format!("{left} is {lack:.1} times {noise}: there is more to it than was found, or the noise is larger.")
         }
     });
     let cannot = told.null_space.first().map(|sentence| format!("Beyond that: {sentence}"));

@@ -37,10 +37,10 @@ const MORE_THAN_NOISE: f64 = 1.5;
 const MUCH_MORE: f64 = 4.0;
 /// The error with another set of causes has to be less than this share of what it is with the first.
 const BETTER: f64 = 0.85;
-/// Errors of a few runs differ by this factor.
-const HARDLY: f64 = 1.15;
 /// And this one without any map of the road: slopes are there, and few recordings foretell those of another road.
 const FAR_BETTER: f64 = 0.25;
+/// Errors of a few runs differ by this factor.
+const HARDLY: f64 = 1.15;
 
 /// What the runs are to be looked at without, one after the other, the doubtful one first: of some findings that leave so many times the
 /// noise.

@@ -7,6 +7,7 @@ use crate::output::Output;
 use crate::page;
 use crate::picture::{self, Drawn, Wanted};
 use crate::say::Say;
+use headland_calibrate::statistics::standard_deviation;
 use headland_compare::{Check, Requirement, Summary};
 use headland_plugin::Registry;
 use headland_recording::Recording;
@@ -131,30 +132,17 @@ fn elsewhere(pairs: &[Pair]) -> Option<String> {
     const FAR_M: f64 = 10.0;
     /// Slopes that spread by less do not matter, as a share of weight in the root mean square.
     const HILLY: f64 = 0.005;
-    let forward = pairs.iter().filter(|pair| pair.drive != "Speed" && spread_of_slopes(pair) > HILLY);
-    let far_m = forward.map(|pair| (farthest_m(pair), pair.comparison.run.as_str()));
-    let (far_m, run) =
-        far_m.filter(|(far_m, _)| *far_m > FAR_M).max_by(|one, other| one.0.total_cmp(&other.0))?;
+    let hilly = |pair: &&Pair| pair.outcome.trace.get("grade").map_or(0.0, standard_deviation) > HILLY;
+    let forward = pairs.iter().filter(|pair| pair.drive != "Speed").filter(hilly);
+    let far = forward.filter_map(|pair| {
+        let far_m = pair.comparison.channel("position_m")?.metrics.max_error;
+        (far_m > FAR_M).then_some((far_m, pair.comparison.run.as_str()))
+    });
+    let (far_m, run) = far.max_by(|one, other| one.0.total_cmp(&other.0))?;
     Some(format!(
         "where slopes change, what is a little ahead meets the next one early: in {run} the model came {far_m:.0} m from where the \
          vehicle was. `replay: (drive: Speed)` compares forces where they acted, a shorter `window_s` begins anew more often"
     ))
-}
-
-/// How far the model came from where the vehicle was [m]; 0 where nobody knows.
-fn farthest_m(pair: &Pair) -> f64 {
-    let [went_m, was_m] =
-        [&pair.outcome.trace, &pair.measured].map(|trace| trace.get("position_m").unwrap_or(&[]));
-    let apart_m = went_m.iter().zip(was_m).map(|(went, was)| (went - was).abs());
-    apart_m.filter(|apart| apart.is_finite()).fold(0.0, f64::max)
-}
-
-/// Standard deviation of the slopes that the model met.
-fn spread_of_slopes(pair: &Pair) -> f64 {
-    let grades = pair.outcome.trace.get("grade").unwrap_or(&[]);
-    let count = grades.len().max(1) as f64;
-    let mean = grades.iter().sum::<f64>() / count;
-    (grades.iter().map(|grade| (grade - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
 /// Puts the document together; `files` are scenario and recording.

@@ -99,6 +99,17 @@ fn what_is_logged_less_often_is_told_to_the_model_too() {
     assert!(error_m_s < 1e-3, "{error_m_s}: {told}");
 }
 
+/// The same log with a gap of ten seconds, which no line bridges: it is left out, and no brakes are blamed.
+#[test]
+fn a_gap_in_what_drives_the_model_is_left_out_by_its_own_name() {
+    let place = Place::new();
+    scenario(&place, "");
+    weighed(&place, |row| !(50..150).contains(&row));
+    let (_, told) = compared(&place);
+    assert!(told.contains("100 of 201 samples") && told.contains("longer than can be bridged"), "{told}");
+    assert!(!told.contains("least_acceleration_m_s2"), "{told}");
+}
+
 /// A cart that is pulled over waves of 40 m at walking speed by a force that is 30 N more than it takes: soon the model meets them
 /// early, unless it begins anew from time to time.
 #[test]
@@ -130,17 +141,6 @@ fn a_model_that_meets_slopes_early_says_so() {
     place.write("scenario.ron", &hilly.replacen("    free:", "    replay: (window_s: 10),\n    free:", 1));
     let (error_m_s, told) = compared(&place);
     assert!(error_m_s < 0.3 && !told.contains("early"), "{error_m_s}: {told}");
-}
-
-/// The same log with a gap of ten seconds, which no line bridges: it is left out, and no brakes are blamed.
-#[test]
-fn a_gap_in_what_drives_the_model_is_left_out_by_its_own_name() {
-    let place = Place::new();
-    scenario(&place, "");
-    weighed(&place, |row| !(50..150).contains(&row));
-    let (_, told) = compared(&place);
-    assert!(told.contains("100 of 201 samples") && told.contains("longer than can be bridged"), "{told}");
-    assert!(!told.contains("least_acceleration_m_s2"), "{told}");
 }
 
 /// A scenario that says no heading knows how far a run came, and not where: 200 m due north of a place of its own.

@@ -5,14 +5,14 @@ use super::{Around, Cause, MOTION, cause, linear, positive, shape};
 /// What a pass leaves of the resistance that the one before it left: between the points of so coarse a grid lies more than
 /// levels that differ from run to run leave to be told.
 const PASSED_ON: [f64; 6] = [0.95, 0.85, 0.7, 0.55, 0.4, 0.25];
-/// What every pass makes of what the one before it added, on ground that breaks up,
-const BROKEN_UP: [f64; 4] = [1.04, 1.1, 1.18, 1.3];
-/// and the most that it may.
-const MOST_BROKEN: f64 = 1.5;
 /// The same from lap to lap, of which a run has several.
 const LAPPED: [f64; 3] = [0.75, 0.5, 0.25];
 /// What a pass may leave.
 const LEAST_LEFT: f64 = 0.02;
+/// What every pass makes of what the one before it added, on ground that breaks up,
+const BROKEN_UP: [f64; 4] = [1.04, 1.1, 1.18, 1.3];
+/// and the most that it may.
+const MOST_BROKEN: f64 = 1.5;
 /// Usual size: part of the coefficient that passes take [1].
 const USUAL: f64 = 0.03;
 
@@ -26,16 +26,16 @@ const SHORTEST_M: f64 = 20.0;
 /// and two neighbours of the grid differ by this factor, so that the first edge lies within a twentieth of its place.
 const APART: f64 = 1.1;
 
-/// What may firm.
+/// What may firm or break up.
 pub(super) fn passes(around: &Around) -> Vec<Cause> {
     let mut all = Vec::new();
     if around.passes > 2 {
         let terms = vec![linear("coefficient", "1", USUAL), shape("factor", "1")];
         let words = ("F = c (fⁿ⁻¹ − 1) N", "ground that firms with every pass");
-        all.push(firms(terms, words).shaped(PASSED_ON.map(|factor| vec![factor]).into()));
+        all.push(passed_over(terms, words).shaped(PASSED_ON.map(|factor| vec![factor]).into()));
         let terms = vec![positive("coefficient", "1", USUAL), shape("factor", "1").within(1.0, MOST_BROKEN)];
         let words = ("F = c (fⁿ⁻¹ − 1) N", "ground that breaks up with every pass");
-        all.push(firms(terms, words).shaped(BROKEN_UP.map(|factor| vec![factor]).into()));
+        all.push(passed_over(terms, words).shaped(BROKEN_UP.map(|factor| vec![factor]).into()));
     }
     let laps_m = laps_m(around.reach_m);
     if around.soil_coefficient > SOFT && !laps_m.is_empty() {
@@ -46,12 +46,12 @@ pub(super) fn passes(around: &Around) -> Vec<Cause> {
         ];
         let shapes = laps_m.iter().flat_map(|lap_m| LAPPED.map(|factor| vec![factor, *lap_m]));
         let words = ("F = c (f^⌊x/L⌋ − 1) N", "ground that firms with every lap");
-        all.push(firms(terms, words).shaped(shapes.collect()));
+        all.push(passed_over(terms, words).shaped(shapes.collect()));
     }
     all
 }
 
-fn firms(terms: Vec<super::Term>, (equation, words): (&'static str, &'static str)) -> Cause {
+fn passed_over(terms: Vec<super::Term>, (equation, words): (&'static str, &'static str)) -> Cause {
     cause(
         "multipass",
         MOTION,

@@ -146,11 +146,26 @@ pub struct Fit {
 impl Fit {
     /// What its noise is called.
     pub fn noise_in_words(&self) -> &'static str {
-        if self.signal == "speed_m_s" {
+        if self.has_noise_of_its_own() {
             "the noise of the sensor"
         } else {
             "what neighbouring stretches differ by"
         }
+    }
+
+    /// What its lack of fit is of: a signal without a noise of its own is judged by the rows of a balance, and not sample by sample as its
+    /// error is.
+    pub fn left_in_words(&self) -> &'static str {
+        if self.has_noise_of_its_own() {
+            "What is left"
+        } else {
+            "Of the fitted runs, row by row, what is left"
+        }
+    }
+
+    /// Whether its signal has a noise that is known by itself.
+    fn has_noise_of_its_own(&self) -> bool {
+        self.signal == "speed_m_s"
     }
 }
 

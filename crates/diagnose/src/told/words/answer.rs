@@ -230,12 +230,7 @@ fn left_over(told: &Told) -> Option<String> {
     const MUCH: f64 = 2.0;
     let lack = told.fit.lack_of_fit;
     let noise = told.fit.noise_in_words();
-    // A signal without a noise of its own is judged by the rows of its balance, and not sample by sample as its error is.
-    let left = if told.fit.signal == "speed_m_s" {
-        "What is left"
-    } else {
-        "Of the fitted runs, row by row, what is left"
-    };
+    let left = told.fit.left_in_words();
     let much = (lack.is_finite() && lack > MUCH).then(|| {
         if told.verdict == Verdict::None || !told.stands_out {
             format!("{left} is {lack:.1} times {noise}, without a pattern that stands out.")

@@ -1,8 +1,8 @@
 //! Which law: complexity against error on runs that were left out.
 
 use crate::SymbolicError;
-use crate::law::{Law, write};
-use crate::polish::Polished;
+use crate::law::{Law, Written, write};
+use crate::polish::{Polished, amplitudes};
 use crate::problem::Bench;
 use crate::search::{Searched, Stop};
 use crate::validate::{Judge, Verdict};
@@ -88,7 +88,7 @@ pub(crate) fn choose(bench: &Bench, searched: Searched, stop: Stop) -> Result<Fo
         .position(|one| allowed(&one) && as_good(one, best))
         .filter(|index| !front[*index].law.terms.is_empty());
     let nothing = front.first().unwrap_or(best);
-    let laws = front.iter().map(|one| told(bench, one, nothing, best, variance)).collect();
+    let laws = front.iter().map(|one| told((bench, &judge), one, nothing, best, variance)).collect();
     Ok(Found { front: laws, chosen, chance: searched.chance })
 }
 
@@ -126,36 +126,23 @@ fn difference(one: &Judged, best: &Judged) -> (f64, f64) {
     (mean * count, (variance * count).sqrt())
 }
 
-fn told(bench: &Bench, one: &Judged, nothing: &Judged, best: &Judged, variance: f64) -> Law {
-    let runs = bench.fitted.len() + bench.unseen.len();
-    let runs = bench.variables.first().map_or(runs, |variable| variable.runs.len());
+fn told(
+    (bench, judge): (&Bench, &Judge),
+    one: &Judged,
+    nothing: &Judged,
+    best: &Judged,
+    variance: f64,
+) -> Law {
     let covariance = &one.verdict.covariance * variance;
-    let written = write(bench, &one.law, &covariance, runs);
+    let written = written(bench, &one.law, &covariance);
     let (beyond, sd) = difference(one, best);
     let sum = |of: &Judged| of.verdict.folds.iter().map(|(error, _)| error).sum::<f64>();
     let unseen = one.verdict.unseen.zip(nothing.verdict.unseen);
-    let alone = |(law, covariance): (Polished, DMatrix<f64>)| {
-        let written = write(bench, &law, &covariance, runs);
-        let (gain, complexity) = (0.0, law.complexity());
-        let none = f64::NAN;
-        Law {
-            text: written.text,
-            constants: written.constants,
-            terms: 1,
-            complexity,
-            gain,
-            error: none,
-            error_beyond_best: none,
-            error_beyond_best_sd: none,
-            explained: none,
-            unseen: None,
-            prediction: written.prediction,
-            each: Vec::new(),
-        }
-    };
+    let alone = |(law, covariance): (Polished, DMatrix<f64>)| plain(bench, &law, &covariance);
     let several = one.law.terms.len() > 1;
     let each = if several { one.law.each(&covariance).into_iter().map(alone).collect() } else { Vec::new() };
     Law {
+        powers: other_powers(bench, judge, &one.law, variance),
         text: written.text,
         constants: written.constants,
         terms: one.law.terms.len(),
@@ -169,4 +156,43 @@ fn told(bench: &Bench, one: &Judged, nothing: &Judged, best: &Judged, variance: 
         prediction: written.prediction,
         each,
     }
+}
+
+/// A law as it is written, of all runs.
+fn written(bench: &Bench, law: &Polished, covariance: &DMatrix<f64>) -> Written {
+    let runs = bench.fitted.len() + bench.unseen.len();
+    let runs = bench.variables.first().map_or(runs, |variable| variable.runs.len());
+    write(bench, law, covariance, runs)
+}
+
+/// A law of which nobody asked how it fares.
+fn plain(bench: &Bench, law: &Polished, covariance: &DMatrix<f64>) -> Law {
+    let written = written(bench, law, covariance);
+    let none = f64::NAN;
+    Law {
+        text: written.text,
+        constants: written.constants,
+        terms: law.terms.len(),
+        complexity: law.complexity(),
+        error: none,
+        error_beyond_best: none,
+        error_beyond_best_sd: none,
+        explained: none,
+        prediction: written.prediction,
+        ..Law::default()
+    }
+}
+
+/// A law with another power of what stands in it, in the place of each, and amplitudes anew.
+fn other_powers(bench: &Bench, judge: &Judge, law: &Polished, variance: f64) -> Vec<Law> {
+    let with = |place: usize| {
+        law.terms[place].other_powers(&bench.variables).into_iter().filter_map(move |term| {
+            let mut terms = law.terms.clone();
+            terms[place] = term;
+            let law = amplitudes(bench, terms)?;
+            let covariance = judge.judge(bench, &law)?.covariance * variance;
+            Some(plain(bench, &law, &covariance))
+        })
+    };
+    (0..law.terms.len()).flat_map(with).collect()
 }

@@ -7,7 +7,7 @@ use crate::term::Term;
 use crate::variable::{ACCELERATION, Checked, DRIVE, Enters, Kind, PRESSURE};
 
 /// Powers of a size. Sources of the halves: rolling in soil and flow through gaps have such exponents.
-const POWERS: [f64; 5] = [0.5, 1.0, 1.5, 2.0, 3.0];
+pub(crate) const POWERS: [f64; 5] = [0.5, 1.0, 1.5, 2.0, 3.0];
 /// Where powers start that the data move.
 const FREE_POWERS: [f64; 2] = [1.25, 2.5];
 /// Powers of what sets in beyond a threshold.

@@ -55,6 +55,9 @@ pub struct Law {
     pub prediction: Vec<Vec<f64>>,
     /// Its terms by themselves, each a law with the numbers that it has here, where there are several.
     pub each: Vec<Law>,
+    /// The same with another power of what stands in it, in the place of each: rows that hardly tell powers apart may do so beside what
+    /// the caller knows.
+    pub powers: Vec<Law>,
 }
 
 /// Constants as the effect `expression` takes them: `{"a1_n": 120.0, "v1_m_s": 5.0}`.

@@ -1,7 +1,8 @@
 //! A term of a law: an amplitude in the unit of the target times shapes that are pure numbers.
 
+use crate::dictionary::POWERS;
 use crate::shape::{Columns, Factor, Free, Shape};
-use crate::variable::{Checked, Enters};
+use crate::variable::{Checked, Enters, Kind};
 use crate::vector::times;
 
 /// One or two factors; the amplitude is linear and not held here.
@@ -51,6 +52,25 @@ impl Term {
             Some(other)
         };
         (0..self.factors.len()).filter_map(of).collect()
+    }
+
+    /// The same with another power of a size in the place of each.
+    pub fn other_powers(&self, variables: &[Checked]) -> Vec<Self> {
+        let of = |place: usize| {
+            let factor = self.factors[place];
+            let of_size = variables[factor.variable].known.kind == Kind::Size;
+            let own = match factor.shape {
+                Shape::Power(power) if of_size => Some(power),
+                _ => None,
+            };
+            let others = POWERS.into_iter().filter(move |power| own.is_some_and(|own| own != *power));
+            others.map(move |power| {
+                let mut other = self.clone();
+                other.factors[place].shape = Shape::Power(power);
+                other
+            })
+        };
+        (0..self.factors.len()).flat_map(of).collect()
     }
 
     /// Whether a variable is in it that enters by what bends alone.

@@ -3,6 +3,7 @@
 pub(crate) mod abreast;
 pub(crate) mod band;
 pub(crate) mod catalogue;
+pub(crate) mod clocks;
 pub(crate) mod cycles;
 pub(crate) mod eliminated;
 pub(crate) mod functions;

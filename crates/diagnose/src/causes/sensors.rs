@@ -3,6 +3,7 @@
 use crate::balances::balance::{Kind, change, longest_renewal_s};
 use crate::balances::gram::Column;
 use crate::causes::catalogue::{MOST_SCALE, MOST_SPEED_SCALE};
+use crate::causes::clocks::{DRIFT, FORCE, drifted, drifted_force, force_runs_apart};
 use crate::runs::placed;
 use crate::runs::recorded::Recorded;
 use crate::runs::said::Said;
@@ -46,7 +47,7 @@ pub fn small_latency_s(case: &Case) -> f64 {
 pub fn is_no_fault(case: &Case, id: &str, value: f64) -> bool {
     match id {
         "latency" => value.abs() <= small_latency_s(case) || value < 0.0 && !case.fitted_is_driven(),
-        "clock_drift" => value.abs() * case.longest_s() <= small_latency_s(case),
+        DRIFT => value.abs() * case.longest_s() <= small_latency_s(case),
         "speed_scale" => !(SMALL_SCALE..=MOST_SPEED_SCALE).contains(&value.abs()),
         "force_scale" => !(SMALL_SCALE..=MOST_SCALE).contains(&value.abs()),
         "accelerometer_bias" => value.abs() <= 2.0 * SMALL_BIAS_M_S2,
@@ -144,7 +145,7 @@ fn motion(
         let made = run.acceleration_m_s2[index];
         match id {
             "latency" => interpolate(time_s, &run.acceleration_m_s2, time_s[index] + step) - made,
-            "clock_drift" => interpolate(time_s, &run.acceleration_m_s2, drifted(time_s, index, step)) - made,
+            DRIFT => interpolate(time_s, &run.acceleration_m_s2, drifted(time_s, index, step)) - made,
             // With a wheel speed beside it, it is that sensor whose scale is wrong.
             "speed_scale" if run.measured.trace.get("wheel_speed_m_s").is_none() => {
                 made / (1.0 + step) - made
@@ -161,18 +162,13 @@ fn motion(
         .collect()
 }
 
-/// When a clock that runs apart by a share of the time says what happens at a sample [s].
-fn drifted(time_s: &[f64], index: usize, rate: f64) -> f64 {
-    time_s[index] + rate * (time_s[index] - time_s[0])
-}
-
 /// Whether a latency is one of the force: a speed does not come early, so what drives comes late. Where force is made of a
 /// torque, the whole bus is late with it, and the speed is moved against the bus.
 pub fn late_force(run: &Recorded, id: &str, value: f64) -> bool {
     id == "latency" && value < 0.0 && run.measured.trace.get("tractive_force_n").is_some()
 }
 
-/// The channel that a fault is corrected in, and its samples without it.
+/// The channel that a fault is corrected in, and its samples without it; that of the `force` where it may be, or is, one of it.
 fn without(run: &Recorded, id: &str, value: f64, force: bool) -> Option<(&'static str, Vec<f64>)> {
     let trace = &run.measured.trace;
     let time_s = trace.time_s();
@@ -190,7 +186,11 @@ fn without(run: &Recorded, id: &str, value: f64, force: bool) -> Option<(&'stati
             let speed = trace.get("speed_m_s")?;
             each("speed_m_s", &|index, _| interpolate(time_s, speed, time_s[index] + value))
         }
-        "clock_drift" => {
+        DRIFT if force => {
+            let force = trace.get(FORCE)?;
+            each(FORCE, &|index, _| interpolate(time_s, force, drifted_force(time_s, index, value)))
+        }
+        DRIFT => {
             let speed = trace.get("speed_m_s")?;
             each("speed_m_s", &|index, _| interpolate(time_s, speed, drifted(time_s, index, value)))
         }
@@ -212,8 +212,9 @@ pub fn corrected(runs: &[Recorded], id: &str, value: f64) -> Result<Vec<Recorded
     moved(runs, id, value, true)
 }
 
-/// The same; a latency that is one of the force is taken from the force, or else from the speed, the other way.
+/// The same; a latency or a clock that is one of the force is taken from the force, or else from the speed, the other way.
 fn moved(runs: &[Recorded], id: &str, value: f64, force: bool) -> Result<Vec<Recorded>, DiagnoseError> {
+    let force = force && (id != DRIFT || force_runs_apart(runs, value));
     let one = |run: &Recorded| {
         let mut changed = run.clone();
         if let Some((name, samples)) = without(run, id, value, force) {
@@ -222,11 +223,12 @@ fn moved(runs: &[Recorded], id: &str, value: f64, force: bool) -> Result<Vec<Rec
                 changed.measured.trace = with_stand_in(&changed.measured.trace, &run.stands_in)?;
             }
         }
-        if id == "clock_drift" {
+        if id == DRIFT {
             let time_s = run.measured.trace.time_s();
             let last_s = time_s[time_s.len() - 1];
+            let recorded_s = if force { drifted_force } else { drifted };
             for (index, compared) in changed.measured.compared.iter_mut().enumerate() {
-                *compared &= drifted(time_s, index, value) <= last_s;
+                *compared &= recorded_s(time_s, index, value) <= last_s;
             }
         }
         if id == "latency" {
@@ -238,9 +240,9 @@ fn moved(runs: &[Recorded], id: &str, value: f64, force: bool) -> Result<Vec<Rec
                 *compared &= (first..=last).contains(&(time_s + ahead_s));
             }
         }
-        if force && late_force(run, id, value) {
+        if force && (id == DRIFT || late_force(run, id, value)) {
             follow_force(&mut changed);
-        } else if ["latency", "clock_drift"].contains(&id) {
+        } else if ["latency", DRIFT].contains(&id) {
             // Places that are told by the clock of the speed are set right with it.
             let time_s = run.measured.trace.time_s();
             let at = |index: usize| {

@@ -167,13 +167,14 @@ pub fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
     offered.into_iter().filter_map(variable).collect()
 }
 
-/// Acceleration of a run [m/s²]: as the force makes it, which shows what is sudden, and over longer as the speed does. What the
-/// nominal parameters are wrong by would else be an acceleration wherever a speed is held, and tell of that speed.
+/// Acceleration of a run as its speed has it [m/s²]. What a measured force makes of it shares its noise with a power that is held against
+/// that force: bends of it beside the force would follow that noise, in runs that are held out as well.
 fn accelerated_m_s2(run: &Recorded) -> Vec<f64> {
-    as_it_lasts_m_s2(run, &run.acceleration_m_s2)
+    run.motion.slope.clone()
 }
 
-/// The same of an acceleration that forces make.
+/// An acceleration that forces make [m/s²], which shows what is sudden, and over longer as the speed has it. What the nominal parameters
+/// are wrong by would else be an acceleration wherever a speed is held, and tell of that speed.
 fn as_it_lasts_m_s2(run: &Recorded, made: &[f64]) -> Vec<f64> {
     /// Beside the median over so long to either side nothing is sudden [s].
     const AROUND_S: f64 = 3.0;

@@ -3,7 +3,7 @@
 use crate::balances::balance::Kind;
 use crate::causes::catalogue::Form;
 use crate::causes::trial::Trial;
-use crate::choosing::search::{Found, MOST_CAUSES, OTHER_WORDS, concluded, worth};
+use crate::choosing::search::{Found, MOST_CAUSES, OTHER_WORDS, TOLERANCE, concluded, worth};
 use crate::choosing::state::{Part, Stand, State};
 use crate::law::sound::are_alike;
 
@@ -164,6 +164,27 @@ impl State<'_> {
             Some((free, moved / self.pool.sd[free]))
         };
         parts.filter_map(of).collect()
+    }
+
+    /// The listed causes of a set.
+    pub fn listed(&self, stand: &Stand) -> Vec<Part> {
+        stand.parts.iter().filter(|part| self.cause(&part.trial).law.is_none()).cloned().collect()
+    }
+
+    /// How good a set with a law is: what is known is likelier from the start than a term of a formula that says as much, and beside one that
+    /// stays it brings no more than it tells.
+    pub fn good(&self, stand: &Stand) -> f64 {
+        let terms = self.pieces(stand) - self.listed(stand).len();
+        worth(stand) - TOLERANCE * terms as f64
+    }
+
+    /// Whether a set with a law is better than another, where there is one: none whose consumer gives back more than it takes is better than
+    /// one whose does not.
+    pub fn is_better(&self, stand: &Stand, than: Option<&Stand>) -> bool {
+        than.is_none_or(|than| match (self.gives_back(stand), self.gives_back(than)) {
+            (gives, other) if gives != other => other,
+            _ => self.good(stand) > self.good(than),
+        })
     }
 
     /// Whether a set with a law says in fewer causes what another says. As many as there may be at most are too many: they

@@ -119,16 +119,23 @@ fn among(
     Ok((found, as_good))
 }
 
-/// Sets with a law: by itself, beside what was found, and in place of parts of it.
+/// Sets with a law.
+struct Candidates {
+    /// By itself, beside what was found, and in place of parts of it.
+    sets: Vec<Vec<Part>>,
+    /// The same law by other powers, where courses of time were found that may stand beside it.
+    powers: Vec<Vec<Part>>,
+}
+
 fn candidates(
     case: &mut Case,
     system: &System,
     pool: &mut Pool,
     found: &Found,
     sought: &Sought,
-) -> Result<Vec<Vec<Part>>, DiagnoseError> {
+) -> Result<Candidates, DiagnoseError> {
     let listed = found.stand.parts.clone();
-    let mut candidates: Vec<Vec<Part>> = Vec::new();
+    let (mut candidates, mut powers): (Vec<Vec<Part>>, Vec<Vec<Part>>) = (Vec::new(), Vec::new());
     // Of many rows a formula takes long to find, and where functions are needed none does by itself.
     let functions = listed.iter().any(|part| part.spread.is_some());
     let rows = system.row_count_of(sought.kind);
@@ -202,6 +209,14 @@ fn candidates(
                 part = add(case, system, pool, &law, &moved);
             }
         }
+        let takes_its_course = |part: &Part| courses.contains(&case.causes[part.trial.cause].id);
+        if !courses.is_empty() && !start.iter().any(takes_its_course) {
+            for other in &law.powers {
+                if is_sound(case, other, sought) {
+                    powers.push(with(&add(case, system, pool, other, sought)));
+                }
+            }
+        }
         candidates.push(with(&part));
         candidates.push(vec![part]);
         for part in windows(case, system, pool, &law)? {
@@ -213,7 +228,7 @@ fn candidates(
     {
         candidates.push(found.stand.parts.iter().cloned().chain([part]).collect());
     }
-    Ok(candidates)
+    Ok(Candidates { sets: candidates, powers })
 }
 
 /// A set without each of its causes in turn that does something to a balance: beside one that is there another may be what a law is
@@ -241,7 +256,7 @@ fn beside(
     sought: &Sought,
 ) -> Result<Told, DiagnoseError> {
     let rows = system.row_count_of(sought.kind);
-    let candidates = candidates(case, system, pool, &found, sought)?;
+    let Candidates { sets, powers } = candidates(case, system, pool, &found, sought)?;
     let state = State { case, system, pool, fit: &case.fit };
     let alone = found.tried.first().and_then(|round| round.causes.first()).map_or(0.0, |one| one.2);
     let within = |stand: &Stand| {
@@ -251,18 +266,6 @@ fn beside(
     let mut lasting: Vec<Stand> = Vec::new();
     let mut best: Option<Stand> = None;
     let mut as_good: Option<Stand> = None;
-    let listed_of = |state: &State, stand: &Stand| -> Vec<Part> {
-        stand.parts.iter().filter(|part| state.cause(&part.trial).law.is_none()).cloned().collect()
-    };
-    // What is known is likelier from the start than a term of a formula that says as much; beside one that stays it brings no
-    // more than it tells.
-    let good = |state: &State, stand: &Stand| {
-        let terms = state.pieces(stand) - listed_of(state, stand).len();
-        worth(stand) - TOLERANCE * terms as f64
-    };
-    let better = |stand: &Stand, than: &Option<Stand>| {
-        than.as_ref().is_none_or(|than| good(&state, stand) > good(&state, than))
-    };
     let is_sound_set = |stand: &Stand| {
         !state.impossible(&stand.parts, &stand.estimate)
             && state.works_widely(stand, &found.stand)
@@ -273,12 +276,19 @@ fn beside(
             // Beside a course of time that is known by its name none by another is said.
             && (courses.is_empty() || !state.holds_a_course(stand))
     };
-    for parts in candidates {
+    let sets =
+        sets.into_iter().map(|parts| (parts, true)).chain(powers.into_iter().map(|parts| (parts, false)));
+    for (parts, by_itself) in sets {
         let Some(stand) = state.settle(&parts, &found.stand.noises) else { continue };
-        let more = if within(&stand) { state.with_listed(&stand, &found, &[]) } else { Vec::new() };
+        let more =
+            if by_itself && within(&stand) { state.with_listed(&stand, &found, &[]) } else { Vec::new() };
+        let mut beside = None;
         if !courses.is_empty() {
-            lasting.extend(state.with_listed(&stand, &found, &courses).into_iter().take(1));
-            lasting.push(stand.clone());
+            if by_itself {
+                lasting.extend(state.with_listed(&stand, &found, &courses).into_iter().take(1));
+                lasting.push(stand.clone());
+            }
+            beside = state.beside_courses(&stand, &found.stand, &courses);
         }
         // Where the likeliest leaves a free parameter strained, one that takes the strain off it is what was missing.
         let relieved = match &more[..] {
@@ -287,7 +297,7 @@ fn beside(
             }
             _ => None,
         };
-        for stand in more.into_iter().take(1).chain(relieved).chain([stand]) {
+        for stand in more.into_iter().take(1).chain(relieved).chain(beside).chain([stand]) {
             let simpler = state.simpler(&stand, &found.stand);
             let more = worth(&stand) - worth(&found.stand);
             let margin = state.margin(&found, &stand);
@@ -303,9 +313,9 @@ fn beside(
             let plainer =
                 state.numbers(&stand.parts) < state.numbers(&found.stand.parts) && more > -TOLERANCE;
             let doubtful = sound && as_short && (plainer || more > DOUBT * margin);
-            if able && clearly && better(&stand, &best) {
+            if able && clearly && state.is_better(&stand, best.as_ref()) {
                 best = Some(stand);
-            } else if (able || doubtful) && better(&stand, &as_good) {
+            } else if (able || doubtful) && state.is_better(&stand, as_good.as_ref()) {
                 as_good = Some(stand);
             }
         }
@@ -317,7 +327,7 @@ fn beside(
     }
     // A law that was found by itself has what stood in for the listed causes beside it: it is looked for once more beside them.
     if let Some(stand) = best.clone() {
-        let listed = listed_of(&state, &stand);
+        let listed = state.listed(&stand);
         let terms = state.pieces(&stand) - listed.len();
         if !listed.is_empty()
             && rows <= MANY_ROWS
@@ -329,7 +339,7 @@ fn beside(
             let parts: Vec<Part> = listed.into_iter().chain([part]).collect();
             best = state
                 .settle(&parts, &stand.noises)
-                .filter(|other| good(&state, other) > good(&state, &stand) && state.sensible(other))
+                .filter(|other| state.good(other) > state.good(&stand) && state.sensible(other))
                 .or(Some(stand));
         }
     }

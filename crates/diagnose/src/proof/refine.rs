@@ -1,12 +1,13 @@
 //! The accepted causes fitted once more without linearising, together with the free parameters.
 
 use crate::balances::gram::Column;
-use crate::causes::catalogue::{Cause, Class, Form, Term, spell};
+use crate::causes::catalogue::{Cause, Class, ELECTRIC, Form, Term, spell};
 use crate::causes::losses::SMALL_LOSS;
 use crate::causes::profile::Function;
 use crate::causes::sensors::is_no_fault;
 use crate::causes::trial::{Pool, Trial, for_run};
 use crate::choosing::search::{Accepted, Found, Rival};
+use crate::law::beside_courses::gives_more;
 use crate::proof::mirror::{self, Lane, is_whole};
 use crate::proof::widths::{Beyond, Widths, widths};
 use crate::runs::places::in_one_place;
@@ -167,9 +168,11 @@ impl Cured {
     /// Why nothing of its kind is as it would have to be: consumers take, and draught grows with speed, if it depends on it. What stands in
     /// for something else may be found like that. Source of the second: ASABE D497.7.
     pub fn is_unlike_its_kind(&self) -> Option<&'static str> {
-        let course = self.function().filter(|_| self.cause.id == "auxiliary_power" && self.cause.is_course());
-        let gives = course
-            .is_some_and(|course| gives_more(course.values.iter().flat_map(|(powers_w, _)| powers_w.iter())));
+        let course = self.function().filter(|_| self.cause.id == ELECTRIC && self.cause.is_course());
+        let gives = |course: &Function| {
+            gives_more(course.values.iter().flat_map(|(powers_w, _)| powers_w.iter().copied()))
+        };
+        let gives = course.is_some_and(gives);
         let falls = self.cause.id == "drawbar_load"
             && self
                 .cause
@@ -660,27 +663,10 @@ pub fn said_with_all(
     case.said_of(runs, &scenario, values)
 }
 
-/// Whether powers below nought are more than those above, by their squares.
-fn gives_more<'a>(powers_w: impl Iterator<Item = &'a f64>) -> bool {
-    let (mut taken, mut given) = (0.0, 0.0);
-    for power_w in powers_w {
-        if *power_w > 0.0 { taken += power_w.powi(2) } else { given += power_w.powi(2) }
-    }
-    given > taken
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::causes::catalogue::{Around, causes};
-
-    /// Beside consumers that are known to a few hundred watts a heater of 2 kW may seem to give those back while it is off.
-    #[test]
-    fn a_heater_takes_more_than_it_seems_to_give_and_noise_does_not() {
-        let heater = [-400.0, -380.0, 2100.0, 1900.0, -420.0, -390.0];
-        assert!(!gives_more(heater.iter()));
-        assert!(gives_more([-4927.0, 2038.0, -360.0, 300.0].iter()));
-    }
 
     /// The grid of a cold engine reaches to 900 s, and runs of 40 s tell no more than 120 s.
     #[test]

@@ -79,9 +79,10 @@ pub fn late(case: &Case) -> Option<Late> {
 }
 
 impl Case<'_> {
-    /// Which runs coast from their begin on: all, where nothing can have driven any, else those of which a flag says so.
+    /// Which runs coast from their begin on: all, where nothing can have driven any, else those of which a flag says so. What power alone tells
+    /// of may have been driven.
     fn coasts(&self) -> Vec<bool> {
-        let driven = self.driven();
+        let driven = self.driven() || !self.runs.iter().all(Recorded::force_is_known);
         self.runs.iter().map(|run| !driven || run.forward() == Some(Drive::Coast)).collect()
     }
 }

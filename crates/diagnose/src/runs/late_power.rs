@@ -10,6 +10,7 @@
 //! Source: time delays by correlation of prefiltered signals; Ljung, *System Identification* (1999), section 6.4 and example 17.2.
 
 use crate::balances::balance::Kind;
+use crate::causes::clocks::DRIFT;
 use crate::causes::sensors::{interpolate, with_channel};
 use crate::proof::refine::HALF_95;
 use crate::runs::recorded::Recorded;
@@ -20,9 +21,8 @@ use crate::told::report::Interval;
 use crate::{Case, DiagnoseError};
 use headland_recording::renewed_s;
 
-/// The faults that it can be.
+/// The fault that it can be beside that of a clock.
 const LATENCY: &str = "latency";
-const DRIFT: &str = "clock_drift";
 /// The power of a battery, and the two that it is made of.
 const BATTERY: [&str; 3] = ["battery_power_w", "battery_current_a", "battery_voltage_v"];
 /// Signals are brought to one period [s], and delays are tried in steps of it.

@@ -107,6 +107,30 @@ fn a_late_speed_is_told_by_coast_downs_beside_a_run_that_was_driven() {
     is_late(&found_of_scenario(&coasts, &late, &Options::default(), &registry).unwrap());
 }
 
+/// Of an electric drive of which its battery alone tells nobody knows that it coasts: who holds a speed and then slows down as fast as free
+/// rolling would has a driver, and no late speed.
+#[test]
+fn a_driver_who_holds_a_speed_at_first_is_no_late_sensor() {
+    let registry = headland_stock::registry();
+    let text = scenario("", "")
+        .replace("coefficient: 0.02)", "coefficient: 0.06)")
+        .replace("driveline: Neutral()", &format!("driveline: {ELECTRIC}"))
+        .replace(
+            "cycle: [Coast(until: SpeedBelow(speed_m_s: 0.6))]",
+            "cycle: [Hold(for_s: 0.3), Reach(speed_m_s: 2, acceleration_m_s2: 0.56), Hold(for_s: 8)]",
+        );
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.01 * draws.normal(),
+        "battery_voltage_v" | "battery_current_a" => value + 0.1 * draws.normal(),
+        _ => value,
+    };
+    let channels = ["speed_m_s", "battery_voltage_v", "battery_current_a"];
+    let mut recording = recording_of_scenario(&text, &registry, &channels, (5, &noisy));
+    recording.runs.truncate(4);
+    let found = found_of_scenario(&text, &recording, &Options::default(), &registry).unwrap();
+    assert!(!named(&found, "latency"), "{}", found.diagnosis.answer);
+}
+
 /// Where all fitted runs coast, drag in neutral is a level of rolling resistance by what they say; a run that was driven and held out
 /// denies the level, and shows nothing of the drag in neutral.
 #[test]

@@ -9,6 +9,7 @@ use headland_recording::{RecordedRun, Recording};
 use headland_scenario::{AskedInputs, Scenario};
 use headland_sim::Inputs;
 use headland_trace::{Origin, Trace};
+use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -339,6 +340,60 @@ fn consumers_that_each_run_switches_at_times_of_its_own_are_told() {
     let power_w = course.get("auxiliary_power_w").unwrap();
     let edges = [[56.0, 64.0], [140.0, 120.0]].map(|edge| edge.map(|time_s| power_w[at(time_s)]));
     assert!(edges.iter().all(|[off, on]| (on - off).abs() > 10_000.0), "{edges:?}: {}", said.answer);
+}
+
+/// A fan that turns with the engine, by the cube of its speed, beside such a consumer: a course of each run draws both, and tells nothing of
+/// the run that is held out.
+#[test]
+fn a_fan_by_the_speed_of_the_engine_is_told_beside_a_consumer_that_each_run_switches() {
+    /// At the shaft, at 200 rad/s.
+    const FAN_W: f64 = 18e3;
+    const CONSUMER_W: f64 = 4000.0;
+    const HEATING_VALUE_J_KG: f64 = 42.78e6;
+    /// Friction torque of the engine: its mean pressure times its displacement over 4 π.
+    const FRICTION_N_M: f64 = 1.9e5 * 8.8e-3 / (4.0 * PI);
+    let registry = headland_stock::registry();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        _ => value,
+    };
+    let channels = ["speed_m_s", "tractive_force_n", "fuel_rate_kg_s", "engine_speed_rad_s"];
+    let of = |times_s: [u32; 2]| {
+        let hidden = format!(
+            "    effects: [auxiliary_power(times_s: {times_s:?}, powers_w: [{CONSUMER_W:?}])],\n    free:"
+        );
+        recording_of_scenario(&SCENARIO.replacen("    free:", &hidden, 1), &registry, &channels, (69, &noisy))
+    };
+    let (mut recording, other) = (of([30, 75]), of([60, 100]));
+    recording.runs.truncate(4);
+    for (number, run) in recording.runs.iter_mut().enumerate() {
+        if number % 2 == 1 {
+            *run = RecordedRun { id: run.id.clone(), ..other.runs[number].clone() };
+        }
+        let mut draws = Draws::new(69, 100 + number as u64);
+        let turned = run.trace.remove("engine_speed_rad_s").unwrap().values;
+        let mut fuel_kg_s = run.trace.remove("fuel_rate_kg_s").unwrap().values;
+        // The lever of the engine is moved all the time.
+        let turns = |time_s: &f64| 145.0 + 45.0 * (time_s / 5.0 + 2.0 * number as f64).sin();
+        let turns: Vec<f64> = run.trace.time_s().iter().map(turns).collect();
+        for ((fuel, before), after) in fuel_kg_s.iter_mut().zip(&turned).zip(&turns) {
+            *fuel += FRICTION_N_M * (after - before) / HEATING_VALUE_J_KG;
+            *fuel += FAN_W * (after / 200.0).powi(3) / (0.448 * HEATING_VALUE_J_KG) + 5e-5 * draws.normal();
+        }
+        run.trace.push("fuel_rate_kg_s", fuel_kg_s, Origin::Measured).unwrap();
+        run.trace.push("engine_speed_rad_s", turns, Origin::Measured).unwrap();
+    }
+    let found = found_of_scenario(SCENARIO, &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    let finding = |id: &str| {
+        said.findings.iter().find(|one| one.id == id).unwrap_or_else(|| panic!("{id}: {}", said.answer))
+    };
+    let (fan, consumer) = (finding("unlisted"), finding("auxiliary_power"));
+    assert_eq!(fan.depends_on, ["engine_speed_rad_s"], "{}", said.answer);
+    let power_w = consumer.parameters.iter().find(|one| one.name == "power_w").unwrap().value;
+    assert!((power_w / CONSUMER_W - 1.0).abs() < 0.25, "{}", said.answer);
+    let unseen = said.fit.held_out.as_ref().unwrap();
+    assert!(unseen.rmse_after < 0.6 * unseen.rmse_before, "{}", said.answer);
 }
 
 /// An implement that is lowered where each run comes to it takes more the faster the tractor goes, and is no consumer.

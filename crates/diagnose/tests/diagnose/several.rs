@@ -5,6 +5,7 @@ use super::{changed, recorded};
 use headland_calibrate::statistics::Draws;
 use headland_diagnose::{Diagnosed, Options, Verdict};
 use headland_recording::Recording;
+use headland_trace::Origin;
 
 pub fn ids(found: &Diagnosed) -> Vec<&str> {
     found.diagnosis.findings.iter().map(|finding| finding.id.as_str()).collect()
@@ -268,7 +269,8 @@ fn a_late_torque_is_told_as_that() {
     assert!((latency.parameters[0].value + 0.3).abs() < 0.05, "{:?}", latency.parameters);
 }
 
-/// The clock of a force falls behind by up to half a second: where the force of braking sets in late, nobody braked.
+/// The clock of a force falls behind by up to half a second: where the force of braking sets in late, nobody braked. Whose clock it is an
+/// accelerometer says that goes with the speed.
 #[test]
 fn a_force_whose_clock_runs_slow_is_no_brake() {
     const RATE: f64 = 0.012;
@@ -278,11 +280,16 @@ fn a_force_whose_clock_runs_slow_is_no_brake() {
     let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
         "speed_m_s" => value + 0.02 * draws.normal(),
         "tractive_force_n" => value + 60.0 * draws.normal(),
+        "acceleration_m_s2" => value + 0.03 * draws.normal(),
         _ => value,
     };
     let registry = headland_stock::registry();
-    let channels = ["speed_m_s", "position_m", "heading_rad", "tractive_force_n"];
-    let sound = recording_of_scenario(&text, &registry, &channels, (23, &noisy));
+    let channels = ["speed_m_s", "position_m", "heading_rad", "tractive_force_n", "acceleration_m_s2"];
+    let mut sound = recording_of_scenario(&text, &registry, &channels, (23, &noisy));
+    for run in &mut sound.runs {
+        let felt = run.trace.remove("acceleration_m_s2").unwrap();
+        run.trace.push("specific_force_m_s2", felt.values, Origin::Measured).unwrap();
+    }
     let slow = changed(&sound, "tractive_force_n", |_, trace, index| {
         let (time_s, force) = (trace.time_s(), trace.get("tractive_force_n").unwrap());
         let at = time_s[index] / (1.0 + RATE);
@@ -290,6 +297,9 @@ fn a_force_whose_clock_runs_slow_is_no_brake() {
     });
     let found = found_of_scenario(&text, &slow, &Options::default(), &registry).unwrap();
     assert_eq!(ids(&found), ["clock_drift"], "{}", found.diagnosis.answer);
+    let clock = &found.diagnosis.findings[0];
+    assert_eq!(clock.depends_on, ["tractive_force_n"], "{}", clock.sentence);
+    assert!((clock.parameters[0].value / RATE - 1.0).abs() < 0.1, "{:?}", clock.parameters);
 }
 
 /// Nine passes to and fro over ground that firms, on a slope of which no map knows: levels of each run follow all of it, and say less.

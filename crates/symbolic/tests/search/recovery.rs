@@ -1,7 +1,7 @@
 //! Laws that somebody made up are found again, and nothing is found where nothing is.
 
 use crate::plant::{At, Plant};
-use headland_symbolic::{Found, Options, find};
+use headland_symbolic::{Found, Law, Options, find};
 use std::cell::Cell;
 use std::f64::consts::TAU;
 
@@ -84,6 +84,17 @@ fn a_product_of_two_variables_is_found() {
     let (found, r2) = found(3, 100.0, |at| 50.0 * at.v * (at.heading - 0.9).cos());
     let law = found.law().unwrap();
     assert!(r2 > 0.95 && law.names("v") && law.names("heading") && law.terms == 1, "{r2} {}", law.text);
+}
+
+/// A cube hardly differs from a square where speeds do not differ much: who knows more may choose among them.
+#[test]
+fn a_power_comes_with_the_others_in_its_place() {
+    let (found, _) = found(3, 30.0, |at| 4.0 * at.v * at.v * at.v);
+    let law = found.law().unwrap();
+    assert!(law.text.ends_with("^3") && law.powers.len() == 4, "{} {}", law.text, law.powers.len());
+    let other = law.powers.iter().find(|other| other.text.ends_with("^2")).unwrap();
+    let square = |law: &Law| law.prediction.iter().flatten().map(|force_n| force_n * force_n).sum::<f64>();
+    assert!((0.5..2.0).contains(&(square(other) / square(law))), "its amplitude is its own");
 }
 
 /// Terms more may patch what a good one leaves: who asks for the law is told the best of fewer terms as well.

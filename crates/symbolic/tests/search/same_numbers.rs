@@ -41,6 +41,9 @@ fn front_runs(made: &Made, plant: &Plant, target: Target, what: &str) {
     assert!(found.law().is_some() && found.front.len() > 2);
     for law in found.front.iter().filter(|law| law.terms > 0) {
         runs_as_told(law, what, plant);
+        for other in &law.powers {
+            runs_as_told(other, what, plant);
+        }
     }
 }
 

@@ -4,6 +4,7 @@ use super::{FindingKind, FindingReport, Fit, Interval, ParameterReport, RivalRep
 use crate::Case;
 use crate::balances::balance::{Kind, System};
 use crate::causes::catalogue::{ARTEFACTS, Cause, Class, Form};
+use crate::causes::clocks::{DRIFT, FORCE, force_runs_apart};
 use crate::causes::sensors::late_force;
 use crate::choosing::search::Found;
 use crate::proof::prove::Proof;
@@ -27,7 +28,7 @@ pub fn findings(
     for (place, (cured, effect)) in refined.causes.iter().zip(&proof.effects).enumerate() {
         let balance = system.kinds[cured.accepted.balance];
         let share = share(case, system, found, (refined, proof), place);
-        let cured = &of_its_channel(case, cured);
+        let cured = &in_its_words(case, cured);
         let parameters = parameters(cured);
         let rivals: Vec<RivalReport> = cured
             .accepted
@@ -71,8 +72,17 @@ fn channels(case: &Case, refined: &Refined, place: usize) -> Vec<String> {
     let cured = &refined.causes[place];
     match (cured.cause.id, cured.values.first()) {
         ("latency", Some((value, _))) => vec![late(case, *value).to_owned()],
+        (DRIFT, Some((value, _))) if force_runs_apart(&case.raw, *value) => vec![FORCE.to_owned()],
+        ("speed_scale", _) => first_of(case, &["wheel_speed_m_s", "speed_m_s"]),
+        ("force_scale", _) => first_of(case, &[FORCE, "motor_torque_n_m", "engine_torque_n_m"]),
         _ => cured.cause.channels(),
     }
+}
+
+/// The first of some channels that was recorded: the one that is set right.
+fn first_of(case: &Case, names: &[&str]) -> Vec<String> {
+    let recorded = |name: &&&str| case.raw.iter().any(|run| run.measured.trace.get(name).is_some());
+    names.iter().find(recorded).map(|name| (*name).to_owned()).into_iter().collect()
 }
 
 /// The channel that is late: speed, or what drives where speed would have to come early.
@@ -81,8 +91,9 @@ pub fn late(case: &Case, latency_s: f64) -> &'static str {
     if force { "tractive_force_n" } else { "speed_m_s" }
 }
 
-/// A cause told of the channel that it is a fault of: a speed that comes early is a force that comes late.
-fn of_its_channel(case: &Case, cured: &Cured) -> Cured {
+/// A cause as it is told: of the channel that it is a fault of, for a speed that comes early is a force that comes late; and what was stated
+/// too large as less of it.
+fn in_its_words(case: &Case, cured: &Cured) -> Cured {
     let mut own = cured.clone();
     if let ("latency", Some((value, ci))) = (own.cause.id, own.values.first_mut()) {
         if late(case, *value) != "speed_m_s" {
@@ -92,6 +103,19 @@ fn of_its_channel(case: &Case, cured: &Cured) -> Cured {
             own.cause.words = "a torque that arrives late against the speed, and all that is logged with it";
         }
     }
+    if let (DRIFT, Some((value, ci))) = (own.cause.id, own.values.first_mut())
+        && force_runs_apart(&case.raw, *value)
+    {
+        let of_force = |rate: f64| -rate / (1.0 + rate);
+        (*value, *ci) = (of_force(*value), [of_force(ci[1]), of_force(ci[0])]);
+        own.cause.words = "a clock of the force's logger that runs apart from the others";
+    }
+    let lessens = own.values.first().is_some_and(|(_, ci)| ci[1] < 0.0);
+    own.cause.words = match own.cause.id {
+        "engine_friction" if lessens => "less friction of the engine",
+        "aerodynamic_drag" if lessens => "less aerodynamic drag",
+        _ => own.cause.words,
+    };
     own
 }
 
@@ -366,6 +390,18 @@ fn parameters(cured: &Cured) -> Vec<ParameterReport> {
                 let own = |ci: [f64; 2]| (ci[1] - ci[0]) / (2.0 * HALF_95);
                 if own(ci) > 0.0 { own(ci) } else { own(north_ci).max(own(east_ci)) }
             };
+            // A part that nothing asked for leaves open how much blows across the lane: anything that is usual.
+            let unasked = |ci: [f64; 2]| ci[0] == ci[1];
+            if let (Some(lane), true) = (cured.lane, unasked(north_ci) || unasked(east_ci)) {
+                let half = HALF_95 * lane.sd_m_s;
+                let across = HALF_95 * cured.cause.terms[0].scale;
+                let ci = [(lane.speed_m_s - half).max(0.0), (lane.speed_m_s + half).hypot(across)];
+                let turn = std::f64::consts::PI;
+                return vec![
+                    one("speed_m_s", lane.speed_m_s, ci, "m/s"),
+                    one("from_rad", lane.from_rad, [lane.from_rad - turn, lane.from_rad + turn], "rad"),
+                ];
+            }
             let speed = north.hypot(east);
             let from = east.atan2(north).rem_euclid(std::f64::consts::TAU);
             let along = (north * sd(north_ci)).hypot(east * sd(east_ci)) / speed.max(1e-9);

@@ -137,10 +137,11 @@ pub struct DiagnoseOptions {
     /// What is held against what
     #[command(flatten)]
     pub held: HeldOptions,
-    /// Leave a cause out of the library, as in `--without wind`: and if it is not the wind? Repeatable
+    /// Leave a cause out of the library, as in `--without wind`: and if it is not the wind? An effect that `headland plugins` lists, `grade`
+    /// and the like, `unlisted`, or a sensor's fault such as `latency` (all in docs/diagnosis.md). Repeatable
     #[arg(long, value_name = "ID")]
     pub without: Vec<String>,
-    /// Try just this cause; repeatable
+    /// Try just this cause, an effect or a sensor's fault, and no other; repeatable
     #[arg(long, value_name = "ID")]
     pub only: Vec<String>,
     /// Pictures

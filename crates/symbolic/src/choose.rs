@@ -88,7 +88,14 @@ pub(crate) fn choose(bench: &Bench, searched: Searched, stop: Stop) -> Result<Fo
         .position(|one| allowed(&one) && as_good(one, best))
         .filter(|index| !front[*index].law.terms.is_empty());
     let nothing = front.first().unwrap_or(best);
-    let laws = front.iter().map(|one| told((bench, &judge), one, nothing, best, variance)).collect();
+    let told = |(index, one): (usize, &Judged)| {
+        let law = told(bench, one, nothing, best, variance);
+        // Nobody asks for laws that are longer than the one that was chosen.
+        let asked = chosen.is_some_and(|chosen| index <= chosen);
+        let powers = if asked { other_powers(bench, &judge, &one.law, variance) } else { Vec::new() };
+        Law { powers, ..law }
+    };
+    let laws = front.iter().enumerate().map(told).collect();
     Ok(Found { front: laws, chosen, chance: searched.chance })
 }
 
@@ -126,13 +133,7 @@ fn difference(one: &Judged, best: &Judged) -> (f64, f64) {
     (mean * count, (variance * count).sqrt())
 }
 
-fn told(
-    (bench, judge): (&Bench, &Judge),
-    one: &Judged,
-    nothing: &Judged,
-    best: &Judged,
-    variance: f64,
-) -> Law {
+fn told(bench: &Bench, one: &Judged, nothing: &Judged, best: &Judged, variance: f64) -> Law {
     let covariance = &one.verdict.covariance * variance;
     let written = written(bench, &one.law, &covariance);
     let (beyond, sd) = difference(one, best);
@@ -142,7 +143,6 @@ fn told(
     let several = one.law.terms.len() > 1;
     let each = if several { one.law.each(&covariance).into_iter().map(alone).collect() } else { Vec::new() };
     Law {
-        powers: other_powers(bench, judge, &one.law, variance),
         text: written.text,
         constants: written.constants,
         terms: one.law.terms.len(),
@@ -155,6 +155,7 @@ fn told(
         unseen: unseen.map(|(one, nothing)| 1.0 - one / nothing.max(f64::MIN_POSITIVE)),
         prediction: written.prediction,
         each,
+        powers: Vec::new(),
     }
 }
 

@@ -56,7 +56,7 @@ pub struct Law {
     /// Its terms by themselves, each a law with the numbers that it has here, where there are several.
     pub each: Vec<Law>,
     /// The same with another power of what stands in it, in the place of each: rows that hardly tell powers apart may do so beside what
-    /// the caller knows.
+    /// the caller knows. None of laws that are longer than the one that was chosen.
     pub powers: Vec<Law>,
 }
 

@@ -115,7 +115,9 @@ pub fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
         "x" | "way" => BLOCKS * block_s * median(&speeds).abs(),
         _ => 0.0,
     };
-    let acceleration = kind.is_power().then(|| of(&accelerated_m_s2)).flatten();
+    // As the speed has it: what a measured force makes of it shares its noise with a power that is held against that force, and bends of
+    // it beside the force would follow that noise, in runs that are held out as well.
+    let acceleration = kind.is_power().then(|| of(&|run| run.motion.slope.clone())).flatten();
     // Where no force was measured a power is made of the acceleration already: what a mass would take of it, or what comes late,
     // goes with its sign.
     let forced = case.runs.iter().all(Recorded::force_is_known);
@@ -165,12 +167,6 @@ pub fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
         })
     };
     offered.into_iter().filter_map(variable).collect()
-}
-
-/// Acceleration of a run as its speed has it [m/s²]. What a measured force makes of it shares its noise with a power that is held against
-/// that force: bends of it beside the force would follow that noise, in runs that are held out as well.
-fn accelerated_m_s2(run: &Recorded) -> Vec<f64> {
-    run.motion.slope.clone()
 }
 
 /// An acceleration that forces make [m/s²], which shows what is sudden, and over longer as the speed has it. What the nominal parameters

@@ -127,6 +127,7 @@ struct Candidates {
     powers: Vec<Vec<Part>>,
 }
 
+/// The sets to choose from, beside what was found.
 fn candidates(
     case: &mut Case,
     system: &System,

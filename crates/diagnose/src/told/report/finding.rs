@@ -88,7 +88,7 @@ fn first_of(case: &Case, names: &[&str]) -> Vec<String> {
 /// The channel that is late: speed, or what drives where speed would have to come early.
 pub fn late(case: &Case, latency_s: f64) -> &'static str {
     let force = case.runs.iter().any(|run| late_force(run, "latency", latency_s));
-    if force { "tractive_force_n" } else { "speed_m_s" }
+    if force { FORCE } else { "speed_m_s" }
 }
 
 /// A cause as it is told: of the channel that it is a fault of, for a speed that comes early is a force that comes late; and what was stated

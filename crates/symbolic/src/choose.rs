@@ -5,6 +5,7 @@ use crate::law::{Law, Written, write};
 use crate::polish::{Polished, amplitudes};
 use crate::problem::Bench;
 use crate::search::{Searched, Stop};
+use crate::twins::kept;
 use crate::validate::{Judge, Verdict};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -152,6 +153,7 @@ fn told(bench: &Bench, one: &Judged, nothing: &Judged, best: &Judged, variance: 
         error_beyond_best: beyond,
         error_beyond_best_sd: sd,
         explained: 1.0 - sum(one) / sum(nothing).max(f64::MIN_POSITIVE),
+        kept: kept(bench, &one.law),
         unseen: unseen.map(|(one, nothing)| 1.0 - one / nothing.max(f64::MIN_POSITIVE)),
         prediction: written.prediction,
         each,

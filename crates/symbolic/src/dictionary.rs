@@ -395,6 +395,7 @@ mod tests {
             name: "acceleration".to_owned(),
             unit: "m/s²".to_owned(),
             runs: runs.clone(),
+            twin: None,
             finest: 0.0,
             enters,
         };
@@ -425,6 +426,7 @@ mod tests {
             name: "acceleration".to_owned(),
             unit: "m/s²".to_owned(),
             runs: vec![vec![-1.0, 0.4, 2.0, -0.3]],
+            twin: None,
             finest: 0.0,
             enters: Enters::Bent,
         }];
@@ -456,6 +458,7 @@ mod tests {
                 name: name.to_owned(),
                 unit: unit.to_owned(),
                 runs: vec![situations.iter().map(|at| value(name, at)).collect()],
+                twin: None,
                 finest: 0.0,
                 enters: Enters::Freely,
             })

@@ -51,6 +51,9 @@ pub struct Law {
     pub explained: f64,
     /// The same on runs that were never fitted; none where there are none.
     pub unseen: Option<f64>,
+    /// Where another sensor tells of a variable too: the share that is left of what the law, or any term of it, takes of the squared
+    /// residual where that sensor is asked instead.
+    pub kept: Option<f64>,
     /// What it says, sample by sample, of every run, in the unit of its target.
     pub prediction: Vec<Vec<f64>>,
     /// Its terms by themselves, each a law with the numbers that it has here, where there are several.

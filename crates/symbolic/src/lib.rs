@@ -32,6 +32,7 @@ mod search;
 mod shape;
 mod slope;
 mod term;
+mod twins;
 mod validate;
 mod variable;
 mod vector;

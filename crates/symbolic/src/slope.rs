@@ -90,6 +90,7 @@ mod tests {
             name: "v".to_owned(),
             unit: "m/s".to_owned(),
             runs: vec![values.clone()],
+            twin: None,
             finest: 0.0,
             enters: Enters::Freely,
         }];

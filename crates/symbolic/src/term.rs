@@ -88,6 +88,16 @@ impl Term {
         self.along(variables, |of| (&of.seen[run], &of.seen_s[run]))
     }
 
+    /// The same by the twins of its variables, where these have any.
+    pub fn samples_by_twins(&self, variables: &[Checked], run: usize) -> Vec<Vec<f64>> {
+        self.along(variables, |of| (&of.twin.as_ref().unwrap_or(&of.seen)[run], &of.seen_s[run]))
+    }
+
+    /// Whether another sensor tells of any of its variables.
+    pub fn has_twin(&self, variables: &[Checked]) -> bool {
+        self.factors.iter().any(|factor| variables[factor.variable].twin.is_some())
+    }
+
     /// Its columns in one run, at every sample.
     pub fn all_samples(&self, variables: &[Checked], run: usize) -> Vec<Vec<f64>> {
         self.along(variables, |of| (&of.runs[run], &of.times_s[run]))

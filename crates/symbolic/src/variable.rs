@@ -18,6 +18,8 @@ pub struct Variable {
     pub unit: String,
     /// Samples of every run.
     pub runs: Vec<Vec<f64>>,
+    /// The same by another sensor, likewise, where there is one: what it says by the first alone is no more than that one's noise.
+    pub twin: Option<Vec<Vec<f64>>>,
     /// The finest structure that the rows can show, in its unit: shorter waves would only be seen by their beat with the
     /// rows; 0 where the samples themselves are the limit.
     pub finest: f64,
@@ -124,11 +126,15 @@ pub(crate) const KNOWN: [Known; 27] = [
 pub(crate) struct Checked<'a> {
     pub known: &'static Known,
     pub runs: &'a [Vec<f64>],
+    /// The same by another sensor.
+    twin_runs: Option<&'a [Vec<f64>]>,
     /// Time of every sample of every run [s].
     pub times_s: &'a [Vec<f64>],
     /// Those samples that the rows look at, and their times [s].
     pub seen: Vec<Cow<'a, [f64]>>,
     pub seen_s: Vec<Cow<'a, [f64]>>,
+    /// What another sensor says at those samples.
+    pub twin: Option<Vec<Cow<'a, [f64]>>>,
     /// Least and greatest value in the runs that are fitted.
     pub low: f64,
     pub high: f64,
@@ -154,6 +160,9 @@ impl Checked<'_> {
             }
         };
         of(&mut self.seen, self.runs);
+        if let Some((twin, runs)) = self.twin.as_mut().zip(self.twin_runs) {
+            of(twin, runs);
+        }
         of(&mut self.seen_s, self.times_s);
     }
 
@@ -231,7 +240,9 @@ pub(crate) fn check<'a>(
                 expected: known.unit.to_owned(),
             });
         }
-        for (run, values) in variable.runs.iter().enumerate() {
+        for (run, values) in
+            variable.runs.iter().enumerate().chain(variable.twin.iter().flatten().enumerate())
+        {
             if !values.iter().all(|value| value.is_finite()) {
                 return Err(SymbolicError::NotFinite { what: format!("`{name}`"), run });
             }
@@ -251,8 +262,23 @@ pub(crate) fn check<'a>(
         let borrowed = |runs: &'a [Vec<f64>]| runs.iter().map(|run| Cow::Borrowed(run.as_slice())).collect();
         let (runs, finest) = (variable.runs.as_slice(), variable.finest);
         let (seen, seen_s, enters) = (borrowed(runs), borrowed(times_s), variable.enters);
-        let checked =
-            Checked { known, runs, times_s, seen, seen_s, low, high, negative, enters, step, finest };
+        let twin_runs = variable.twin.as_deref();
+        let twin = twin_runs.map(borrowed);
+        let checked = Checked {
+            known,
+            runs,
+            twin_runs,
+            times_s,
+            seen,
+            seen_s,
+            twin,
+            low,
+            high,
+            negative,
+            enters,
+            step,
+            finest,
+        };
         if checked.spread() > LEAST_SPREAD * checked.size() {
             all.push(checked);
         }
@@ -271,6 +297,7 @@ mod tests {
             name: name.to_owned(),
             unit: unit.to_owned(),
             runs: vec![vec![0.0, 1.0, 3.0]],
+            twin: None,
             finest: 0.0,
             enters: Enters::Freely,
         }

@@ -6,7 +6,7 @@ use crate::balances::rows::Row;
 use crate::causes::catalogue::{Cause, ELECTRIC, FORCE, MECHANICAL, RESISTANCE, is_lost_share};
 use crate::causes::trial::{Pool, Shown, effect, lost_drive_n, per_newton, per_slip};
 use crate::choosing::state::{Part, Stand, State};
-use crate::law::nameable::{agreed_m_s2, moved_m_s2, variables, way_is_place};
+use crate::law::nameable::{agreed_m_s2, made_m_s2, moved_m_s2, variables, way_is_place};
 use crate::line::Line;
 use crate::runs::recorded::Recorded;
 use crate::runs::said::Said;
@@ -37,6 +37,8 @@ pub struct Sought {
     drive_n: Vec<Vec<f64>>,
     /// Acceleration that a force may be made of, likewise [m/s²]; none where it may not.
     accelerations_m_s2: Option<Vec<Vec<f64>>>,
+    /// Acceleration that a power may be made of, likewise, where it is not that of the speed, which is its twin then.
+    sudden_m_s2: Option<Vec<Vec<f64>>>,
     /// What a formula of one makes of the rows of each balance that it shows in, sample by sample of every run: one watt or
     /// one newton, or all that a share is lost of.
     shows: Shown,
@@ -80,6 +82,7 @@ impl Sought {
             somewhen: true,
             drive_n,
             accelerations_m_s2,
+            sudden_m_s2: None,
             shows,
         }))
     }
@@ -87,6 +90,14 @@ impl Sought {
     /// The same by a formula that names neither times nor places.
     pub fn anywhen(&self) -> Self {
         Self { somewhen: false, ..self.clone() }
+    }
+
+    /// The same for a law of a power that names the acceleration, by that which measured forces make: they show what is sudden better than
+    /// the speed does.
+    pub fn by_forces(&self, case: &Case, law: &Law) -> Option<Self> {
+        let forced = case.runs.iter().all(Recorded::force_is_known);
+        let able = self.target == Target::Power && forced && law.names(ACCELERATION);
+        able.then(|| Self { sudden_m_s2: Some(made_m_s2(case)), ..self.clone() })
     }
 
     /// Whether places were recorded, and whether the way that a run came says them as well.
@@ -246,11 +257,23 @@ impl Sought {
         if of_share || self.drive_n.iter().all(|run| !run.is_empty()) && self.target == Target::Power {
             let (name, unit) = ("F_drive".to_owned(), "N".to_owned());
             let enters = if of_share { Enters::Freely } else { Enters::BySize };
-            all.push(Variable { name, unit, runs: self.drive_n.clone(), finest: 0.0, enters });
+            all.push(Variable { name, unit, runs: self.drive_n.clone(), twin: None, finest: 0.0, enters });
+        }
+        if let Some(runs) = &self.sudden_m_s2 {
+            for variable in all.iter_mut().filter(|variable| variable.name == ACCELERATION) {
+                variable.twin = Some(std::mem::replace(&mut variable.runs, runs.clone()));
+            }
         }
         if let Some(runs) = &self.accelerations_m_s2 {
             let (name, unit) = (ACCELERATION.to_owned(), "m/s²".to_owned());
-            all.push(Variable { name, unit, runs: runs.clone(), finest: 0.0, enters: Enters::Bent });
+            all.push(Variable {
+                name,
+                unit,
+                runs: runs.clone(),
+                twin: None,
+                finest: 0.0,
+                enters: Enters::Bent,
+            });
         }
         all
     }
@@ -503,6 +526,7 @@ mod tests {
             somewhen: true,
             drive_n: vec![force_n.clone()],
             accelerations_m_s2: None,
+            sudden_m_s2: None,
             shows: Vec::new(),
         };
         let loses = |share: &dyn Fn(f64) -> f64| {

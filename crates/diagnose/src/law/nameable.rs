@@ -162,6 +162,7 @@ pub fn variables(case: &Case, kind: Kind) -> Vec<Variable> {
             name: name.to_owned(),
             unit: unit.to_owned(),
             runs: runs.filter(whole)?,
+            twin: None,
             finest: finest(name),
             enters: enters(name),
         })
@@ -183,6 +184,11 @@ fn as_it_lasts_m_s2(run: &Recorded, made: &[f64]) -> Vec<f64> {
         if near.is_empty() { 0.0 } else { median(&near) }
     };
     made.iter().zip(time_s).map(|(made, at)| made + lasting(at)).collect()
+}
+
+/// Acceleration that the recorded forces make, sample by sample of every run [m/s²].
+pub fn made_m_s2(case: &Case) -> Vec<Vec<f64>> {
+    case.runs.iter().map(|run| as_it_lasts_m_s2(run, &run.acceleration_m_s2)).collect()
 }
 
 /// What a force may be made of beside a measured one, sample by sample of every run [m/s²]: the acceleration as that force makes it or as

@@ -10,13 +10,17 @@ pub fn first_sound(case: &Case, laws: Vec<Law>, sought: &Sought) -> Option<Law> 
     laws.into_iter().next().filter(|law| is_sound(case, law, sought))
 }
 
-/// Whether a law draws no map, each of its terms is known, none of several is a level nor any a mass, and what is lost on a way is that.
+/// Whether a law draws no map, each of its terms is known, none of several is a level nor any a mass, what is lost on a way is that, and
+/// another sensor says nearly all of it too.
 pub fn is_sound(case: &Case, law: &Law, sought: &Sought) -> bool {
+    /// What less is left of where another sensor is asked is the noise of the first.
+    const NEARLY: f64 = 0.9;
+    let noise = law.kept.is_some_and(|kept| kept < NEARLY);
     let level = law.each.len() > 1 && law.each.iter().any(is_level);
     let loose = law.terms > 1 && is_loose(law);
     let mass = goes_as_a_mass(case, law, sought);
     let known = !is_undetermined(law) && !loose && !mass && !is_hurried(law) && !level;
-    !is_map(law, sought.target, sought.places()) && known && is_lost(law, sought)
+    !noise && !is_map(law, sought.target, sought.places()) && known && is_lost(law, sought)
 }
 
 /// Whether what is lost on a way is lost, and is not all of it.

@@ -210,6 +210,15 @@ fn candidates(
                 part = add(case, system, pool, &law, &moved);
             }
         }
+        // A smoother acceleration takes terms more to say what a sudden one says in one.
+        if let Some(sudden) = sought.by_forces(case, &law) {
+            let told = laws(case, system, pool, &start, &found.stand, &sudden)?;
+            if let Some(other) = first_sound(case, told, &sudden) {
+                let part = add(case, system, pool, &other, &sudden);
+                candidates.push(with(&part));
+                candidates.push(vec![part]);
+            }
+        }
         let takes_its_course = |part: &Part| courses.contains(&case.causes[part.trial.cause].id);
         if !courses.is_empty() && !start.iter().any(takes_its_course) {
             for other in &law.powers {

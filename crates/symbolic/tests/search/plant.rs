@@ -210,6 +210,7 @@ impl Plant {
             name: name.to_owned(),
             unit: unit.to_owned(),
             runs: self.runs.iter().map(|run| run.iter().map(of).collect()).collect(),
+            twin: None,
             finest: 0.0,
             enters: Enters::Freely,
         };

@@ -14,6 +14,7 @@ use crate::choosing::search::{
 };
 use crate::choosing::sharpen;
 use crate::choosing::state::{Part, Stand, State};
+use crate::choosing::windows::windows;
 use crate::outliers::straying;
 use crate::{Case, DiagnoseError};
 use std::collections::BTreeSet;
@@ -269,6 +270,7 @@ pub fn prepared(case: &Case, usable: &[Vec<bool>]) -> Result<(System, Pool), Dia
     let mut pool = pool(case, &system)?;
     if system.row_count() <= MANY_ROWS {
         bend::winds(case, &system, &mut pool)?;
+        windows(case, &system, &mut pool)?;
     }
     Ok((system, pool))
 }

@@ -1,9 +1,11 @@
 //! An implement or trailer that was not recorded.
 //!
-//! F = D₀ + D₁ |v| + D₂ v² + F(t)        from one time to another; F(t) constant between its edges, 0 outside
+//! F = φ(t) (D₀ + D₁ |v| + D₂ v² + F(t))        from one time to another; F(t) constant between its edges, 0 outside
+//! φ(t) = r((t − t₁)/τ) − r((t − t₂)/τ),  r(x) = min(max(x + ½, 0), 1)        1 between the times and 0 outside where τ is 0
 //!
 //! Source: draft as a polynomial of speed, ASABE D497 clause 4 (there for each width and depth of an implement).
-//! Leaves out slope and inertia of a trailer, which are `mass`, and the weight that an implement transfers.
+//! Leaves out slope and inertia of a trailer, which are `mass`, and the weight that an implement transfers; how deep an implement is
+//! while it goes down or comes up is a straight line of time.
 //! Fingerprint: a force against the motion that steps in and out in time, as when an implement is lowered and lifted.
 
 use crate::series::{check_steps, refuse, step};
@@ -25,6 +27,8 @@ pub struct DrawbarLoad {
     from_s: f64,
     #[serde(default = "always_after")]
     to_s: f64,
+    #[serde(default)]
+    ramp_s: f64,
     #[serde(default)]
     times_s: Vec<f64>,
     #[serde(default)]
@@ -62,6 +66,14 @@ impl Plugin for DrawbarLoad {
                 .or(always_before()),
             parameter("to_s", "s", "time at which it ends").usually(0.0, 1e5).or(always_after()),
             parameter(
+                "ramp_s",
+                "s",
+                "how long it takes to begin, half of it before that time, and to end, τ",
+            )
+            .must_be(Bound::NotNegative)
+            .usually(0.0, 10.0)
+            .or(0.0),
+            parameter(
                 "times_s",
                 "[s]",
                 "edges of spells since the start of the run, increasing; none where left out, t",
@@ -85,14 +97,23 @@ impl Plugin for DrawbarLoad {
     }
 }
 
+/// Straight from 0 to 1 within so long about nought, or at once.
+fn ramp(from_middle_s: f64, ramp_s: f64) -> f64 {
+    if ramp_s > 0.0 {
+        (from_middle_s / ramp_s + 0.5).clamp(0.0, 1.0)
+    } else {
+        f64::from(u8::from(from_middle_s >= 0.0))
+    }
+}
+
 impl Effect for DrawbarLoad {
     fn act(&self, at: &Situation, _: &[f64], _: &mut [f64]) -> Action {
         let v = at.speed_m_s.abs();
         let draft_n = self.force_n
             + v * (self.linear_n_s_m + v * self.quadratic_n_s2_m2)
             + step(&self.times_s, &self.forces_n, at.time_s);
-        let pulls = (self.from_s..self.to_s).contains(&at.time_s);
-        Action { resistance_n: if pulls { draft_n } else { 0.0 }, ..Action::default() }
+        let pulls = ramp(at.time_s - self.from_s, self.ramp_s) - ramp(at.time_s - self.to_s, self.ramp_s);
+        Action { resistance_n: pulls * draft_n, ..Action::default() }
     }
 }
 
@@ -115,6 +136,18 @@ mod tests {
             act::<DrawbarLoad>(&format!("(force_n: 500.0, {interval})"), &at_10_m_s()).resistance_n
         };
         assert_eq!((pull("from_s: 40.0"), pull("from_s: 51.0"), pull("to_s: 50.0")), (500.0, 0.0, 0.0));
+    }
+
+    /// Half of it at its times, all of it after half a ramp; what is shorter than its ramps pulls as long all the same.
+    #[test]
+    fn it_takes_its_time_to_begin_and_to_end() {
+        let pull = |interval: &str| {
+            act::<DrawbarLoad>(&format!("(force_n: 500.0, ramp_s: 4.0, {interval})"), &at_10_m_s())
+                .resistance_n
+        };
+        assert!(same(pull("from_s: 50.0"), 250.0) && same(pull("from_s: 47.0"), 500.0));
+        assert!(same(pull("from_s: 51.0"), 125.0) && same(pull("from_s: 30.0, to_s: 49.0"), 125.0));
+        assert!(same(pull("from_s: 49.0, to_s: 51.0"), 250.0));
     }
 
     #[test]

@@ -43,6 +43,7 @@ pub use error::SymbolicError;
 pub use law::{Constant, Law, constants_text};
 pub use problem::{Nuisance, Problem, Rows, Target};
 pub use search::Options;
+pub use shape::EDGE;
 pub use variable::{Enters, Variable};
 
 /// Names that may stand in a law, each with its unit.

@@ -78,7 +78,7 @@ pub(crate) enum Free {
 pub(crate) const STRAIGHT: f64 = 0.5;
 
 /// How steeply a pulse goes on and off: within a hundredth of its period.
-pub(crate) const EDGE: f64 = 20.0;
+pub const EDGE: f64 = 20.0;
 
 impl Shape {
     /// Which constants are free.

@@ -15,3 +15,4 @@ pub(crate) mod search;
 pub(crate) mod sharpen;
 pub(crate) mod state;
 pub(crate) mod together;
+pub(crate) mod windows;

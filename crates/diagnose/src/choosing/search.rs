@@ -170,7 +170,9 @@ pub fn search_without(case: &Case, system: &System, pool: &Pool, banned: &[&str]
     let mut several: Option<Stand> = None;
     let by_run = best.parts.iter().any(|part| state.cause(&part.trial).by_run);
     for stand in state.together(&first, banned, by_run) {
-        if worth(&stand) > worth(&best) + LEAST_GAIN {
+        // Several that only do together are asked as much of as one after the other would be.
+        let more = stand.parts.len().saturating_sub(best.parts.len()).max(1);
+        if worth(&stand) > worth(&best) + LEAST_GAIN * more as f64 {
             best = stand.clone();
         }
         let shared = |part: &Part| part.spread.is_none() && !state.cause(&part.trial).by_run;

@@ -4,6 +4,7 @@ use crate::causes::catalogue::{Cause, Form, Term};
 use crate::causes::trial::{Pool, Trial, add_trial};
 use crate::choosing::search::{Accepted, Found, LEAST_GAIN};
 use crate::choosing::state::{Part, State};
+use crate::choosing::windows;
 use crate::look::MANY_ROWS;
 use crate::{Case, DiagnoseError, System};
 
@@ -20,7 +21,7 @@ const ROUNDS: usize = 8;
 
 /// How a shape is judged.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum How {
+pub enum How {
     /// By itself: a wrong companion must not hold it where it is.
     ByItself,
     /// Beside what it was accepted with, by the same terms.
@@ -87,6 +88,9 @@ pub fn sharpen(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> 
             let best = best(case, system, pool, found, how, (cause, &shape))?;
             if how == How::ByItself {
                 added |= grow(case, system, pool, found, (cause, &best))?;
+            }
+            if how == How::Quietly {
+                added |= windows::soften(case, system, pool, found, (cause, &best))?;
             }
             if best != shape {
                 // What fades by a time constant of its own, or is there for a while, is no better for having found it first.
@@ -186,7 +190,7 @@ fn likely(
 }
 
 /// The best of the trials of a cause of this shape, as each is judged; none of them stays.
-fn likeliest(
+pub fn likeliest(
     case: &Case,
     system: &System,
     pool: &mut Pool,
@@ -237,7 +241,23 @@ fn best(
     how: How,
     (cause, start): (usize, &[f64]),
 ) -> Result<Vec<f64>, DiagnoseError> {
-    let own = found.accepted.iter().find(|one| one.trial.cause == cause);
+    moved(case, (cause, start), judge(case, system, pool, found, how, cause))
+}
+
+/// How likely a shape of a cause makes the recordings, as it is judged.
+pub fn judge<'a>(
+    case: &'a Case,
+    system: &'a System,
+    pool: &'a mut Pool,
+    found: &'a Found,
+    how: How,
+    cause: usize,
+) -> impl FnMut(&[f64]) -> Result<f64, DiagnoseError> + 'a {
+    let is_own = |one: &&Accepted| {
+        let accepted = one.trial.cause;
+        accepted == cause || case.causes[accepted].softened(&case.causes) == Some(cause)
+    };
+    let own = found.accepted.iter().find(is_own);
     let accepted = own.filter(|_| how != How::ByItself);
     let spread = own.and_then(|one| one.function.as_ref()).map(|function| function.spread.clone());
     let wanted = accepted.filter(|_| how == How::Beside).map(|one| one.trial.terms.clone());
@@ -245,7 +265,7 @@ fn best(
     let others: Vec<Part> = found
         .accepted
         .iter()
-        .filter(|one| accepted.is_some() && one.trial.cause != cause && one.function.is_none())
+        .filter(|one| accepted.is_some() && !is_own(one) && one.function.is_none())
         .map(|one| Part { trial: one.trial.clone(), spread: None })
         .collect();
     let noises = match how {
@@ -253,15 +273,16 @@ fn best(
         How::Beside => found.noises.1.clone(),
         How::Quietly => State { case, system, pool, fit: &case.fit }.quiet(&found.stand),
     };
-    let judged = |state: &State, trial: &Trial| {
-        if wanted.as_ref().is_some_and(|terms| *terms != trial.terms) {
-            return None;
-        }
-        let mut parts = others.clone();
-        parts.push(Part { trial: trial.clone(), spread: spread.clone() });
-        state.likely(&parts, &noises)
-    };
-    moved(case, (cause, start), |shape| likeliest(case, system, pool, (cause, shape), judged))
+    move |shape| {
+        likeliest(case, system, pool, (cause, shape), |state, trial| {
+            if wanted.as_ref().is_some_and(|terms| *terms != trial.terms) {
+                return None;
+            }
+            let mut parts = others.clone();
+            parts.push(Part { trial: trial.clone(), spread: spread.clone() });
+            state.likely(&parts, &noises)
+        })
+    }
 }
 
 /// Several causes that all runs share, each at its best shape beside the others, where levels of each run were accepted: those follow
@@ -305,7 +326,7 @@ fn is_shaped(cause: &Cause) -> bool {
 }
 
 /// The likeliest shape of a cause that is reached by moving one parameter at a time.
-fn moved(
+pub fn moved(
     case: &Case,
     (cause, start): (usize, &[f64]),
     mut likely: impl FnMut(&[f64]) -> Result<f64, DiagnoseError>,

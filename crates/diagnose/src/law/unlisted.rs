@@ -273,6 +273,7 @@ fn beside(
         stand.parts.len() < MOST_CAUSES && worth(stand) + HARDLY * alone > worth(&found.stand)
     };
     let courses = state.courses(&found, sought.kind);
+    let has_a_window = found.stand.parts.iter().any(|part| state.cause(&part.trial).window().is_some());
     let mut lasting: Vec<Stand> = Vec::new();
     let mut best: Option<Stand> = None;
     let mut as_good: Option<Stand> = None;
@@ -317,12 +318,16 @@ fn beside(
                 && (clearly || simpler && more > -TOLERANCE)
                 && (simpler || !state.is_listed(&stand))
                 && (simpler && clearly || !state.paraphrases(&stand, &found.stand));
-            // What says it better than the listed causes, and not by enough, is a doubt of them, whatever it is like.
+            // What says it better than the listed causes, and not by enough, is a doubt of them, whatever it is like, but for the edges
+            // of a window: how it sets in and ends is no cause of its own.
             let as_short = state.pieces(&stand) <= found.stand.parts.len();
             // So is what says as much in fewer numbers.
             let plainer =
                 state.numbers(&stand.parts) < state.numbers(&found.stand.parts) && more > -TOLERANCE;
-            let doubtful = sound && as_short && (plainer || more > DOUBT * margin);
+            let doubtful = sound
+                && as_short
+                && (plainer || more > DOUBT * margin)
+                && !(has_a_window && state.paraphrases(&stand, &found.stand));
             if able && clearly && state.is_better(&stand, best.as_ref()) {
                 best = Some(stand);
             } else if (able || doubtful) && state.is_better(&stand, as_good.as_ref()) {

@@ -69,20 +69,27 @@ fn as_loaded(there: &[Loaded], own: Loaded) -> bool {
 }
 
 /// Whether what is on between two times, in one run or in all of them, may as well be what the ground does: it is on in one and the
-/// same place, and nobody comes across that at another time. Nothing says so where no place was recorded.
+/// same place, and nobody comes across that at another time. What several runs show begins and ends for all of them where the ground
+/// does. Nothing says so where no place was recorded.
 pub fn in_one_place(case: &Case, run: Option<usize>, [from_s, to_s]: [f64; 2]) -> bool {
+    /// What all were in, as a share of what any was in: a window is known to a tenth of what it lasts at either end.
+    const TOGETHER: f64 = 0.8;
     let is_on = |own: &&Recorded| run.is_none_or(|run| own.number == run);
     let on: Vec<(&Recorded, Place)> =
         case.runs.iter().filter(is_on).filter_map(|run| Some((run, stretch(run, from_s, to_s)?))).collect();
     let [(first, there), others @ ..] = &on[..] else { return false };
     let mostly = |place: Place| overlap(*there, place) > 0.5 * (there.1 - there.0);
+    let (shared, any) = others.iter().fold((*there, *there), |(shared, any), (_, place)| {
+        ((shared.0.max(place.0), shared.1.min(place.1)), (any.0.min(place.0), any.1.max(place.1)))
+    });
     let ever = (f64::NEG_INFINITY, f64::INFINITY);
     let off = |own: &Recorded| if is_on(&own) { vec![(ever.0, from_s), (to_s, ever.1)] } else { vec![ever] };
     let at_another_time = |own: &Recorded| {
         off(own).into_iter().filter_map(|(from_s, to_s)| stretch(own, from_s, to_s)).any(mostly)
     };
     first.measured.trace.get("position_m").is_some()
-        && others.iter().all(|(run, place)| run.path == first.path && mostly(*place))
+        && others.iter().all(|(run, _)| run.path == first.path)
+        && shared.1 - shared.0 > TOGETHER * (any.1 - any.0)
         && !case.runs.iter().any(|run| run.path == first.path && at_another_time(run))
 }
 

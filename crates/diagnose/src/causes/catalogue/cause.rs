@@ -101,6 +101,8 @@ pub fn cause(
     }
 }
 
+/// How long a window takes to set in and to end.
+pub const RAMP: &str = "ramp_s";
 /// The cause that is a limit.
 pub const LIMIT: &str = "regeneration_limit";
 
@@ -137,6 +139,21 @@ impl Cause {
         let held: Vec<usize> = (0..self.terms.len()).filter(|place| !self.terms[*place].linear).collect();
         let of = |place: usize| shape.get(held.iter().position(|held| *held == place)?).copied();
         Some([of(from)?, of(to)?])
+    }
+
+    /// How long it takes to set in and to end, by its shape [s], where that is estimated.
+    pub fn ramp_s(&self, shape: &[f64]) -> Option<f64> {
+        let shaped = self.terms.iter().filter(|term| !term.linear);
+        shaped.zip(shape).find(|(term, _)| term.name == RAMP).map(|(_, value)| *value)
+    }
+
+    /// The cause that is the same with edges that take their time, by its place among all.
+    pub fn softened(&self, all: &[Self]) -> Option<usize> {
+        let names = |cause: &Self| cause.terms.iter().map(|term| term.name).collect::<Vec<_>>();
+        let wanted: Vec<_> = names(self).into_iter().chain([RAMP]).collect();
+        all.iter().position(|other| {
+            other.id == self.id && other.upstream == self.upstream && names(other) == wanted
+        })
     }
 
     /// How many numbers are estimated where it is no function: sizes and shapes, or those of its formula.

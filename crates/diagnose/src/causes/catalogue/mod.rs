@@ -8,7 +8,7 @@ mod powers;
 mod sensors;
 mod term;
 
-pub use cause::{Cause, Class, Form};
+pub use cause::{Cause, Class, Form, RAMP};
 pub use law_text::{CHANNELS, ELECTRIC, FORCE, LawText, MECHANICAL, RESISTANCE, is_lost_share};
 pub use sensors::{ARTEFACTS, MOST_SCALE, MOST_SPEED_SCALE};
 pub use term::Term;
@@ -78,6 +78,9 @@ const MOST_WIND_M_S: f64 = 20.0;
 /// A law of speed says nothing about its own level at a reference that is slower [m/s].
 const SLOWEST_REFERENCE_M_S: f64 = 0.5;
 
+/// What a hitch lets down or lifts in less is let down at once, and in more it is something else [s].
+const SHORTEST_RAMP_S: f64 = 0.1;
+const LONGEST_RAMP_S: f64 = 10.0;
 const MOTION: &[Kind] = &[Kind::Motion, Kind::Battery, Kind::Fuel];
 /// Where slip shows: force times the difference of speeds is taken from the engine, and alone it could be any loss in proportion to load.
 const SLIPS: &[Kind] = &[Kind::Slip, Kind::Fuel];
@@ -135,6 +138,21 @@ fn fading_s(around: &Around) -> (f64, f64) {
 fn windows(duration_s: f64) -> Vec<Vec<f64>> {
     let edge = |eighth: u8| duration_s * f64::from(eighth) / 8.0;
     (1..7).flat_map(|from| (from + 1..=8).map(move |to| vec![edge(from), edge(to)])).collect()
+}
+
+/// An implement that is let down and lifted at the same times of every run, at once or within a while.
+fn let_down(pull: Term, weight: f64, ramp: Option<Term>) -> Cause {
+    let linear = linear("linear_n_s_m", "N s/m", 0.004 * weight);
+    let terms = [pull, linear, shape("from_s", "s"), shape("to_s", "s")];
+    cause(
+        "drawbar_load",
+        MOTION,
+        terms.into_iter().chain(ramp).collect(),
+        "F = D₀ + D₁ v between two times",
+        &["time_s", "speed_m_s"],
+        "an implement that is down for a while",
+        "repeat without it, or log the drawbar force",
+    )
 }
 
 /// A cause that works in spells of single runs.
@@ -531,21 +549,10 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             "an implement or trailer that was not recorded",
             "repeat without it, or log the drawbar force",
         ),
-        cause(
-            "drawbar_load",
-            MOTION,
-            vec![
-                pull,
-                linear("linear_n_s_m", "N s/m", 0.004 * weight),
-                shape("from_s", "s"),
-                shape("to_s", "s"),
-            ],
-            "F = D₀ + D₁ v between two times",
-            &["time_s", "speed_m_s"],
-            "an implement that is down for a while",
-            "repeat without it, or log the drawbar force",
-        )
-        .shaped(windows(around.duration_s)),
+        let_down(pull, weight, None).shaped(windows(around.duration_s)),
+        // Looked for where the one that is let down at once was found.
+        let_down(pull, weight, Some(shape(RAMP, "s").within(SHORTEST_RAMP_S, LONGEST_RAMP_S)))
+            .shaped(Vec::new()),
         cause(
             "speed_threshold",
             MOTION,

@@ -73,6 +73,7 @@ fn channels(case: &Case, refined: &Refined, place: usize) -> Vec<String> {
     match (cured.cause.id, cured.values.first()) {
         ("latency", Some((value, _))) => vec![late(case, *value).to_owned()],
         (DRIFT, Some((value, _))) if force_runs_apart(&case.raw, *value) => vec![FORCE.to_owned()],
+        (DRIFT, Some(_)) => vec!["speed_m_s".to_owned()],
         ("speed_scale", _) => first_of(case, &["wheel_speed_m_s", "speed_m_s"]),
         ("force_scale", _) => first_of(case, &[FORCE, "motor_torque_n_m", "engine_torque_n_m"]),
         _ => cured.cause.channels(),

@@ -3,7 +3,9 @@
 use crate::balances::balance::Kind;
 use crate::causes::catalogue::Form;
 use crate::causes::trial::Trial;
-use crate::choosing::search::{Found, MOST_CAUSES, OTHER_WORDS, TOLERANCE, concluded, worth};
+use crate::choosing::search::{
+    Found, LEAST_GAIN, MOST_CAUSES, OTHER_WORDS, PER_CAUSE, TOLERANCE, concluded, worth,
+};
 use crate::choosing::state::{Part, Stand, State};
 use crate::law::sound::are_alike;
 
@@ -185,6 +187,23 @@ impl State<'_> {
             (gives, other) if gives != other => other,
             _ => self.good(stand) > self.good(than),
         })
+    }
+
+    /// A set with a law, or one with fewer listed causes beside the same one, where that is worse by less than the best of many causes
+    /// takes to be one: what it had more patches the law.
+    pub fn without_a_patch(&self, best: Stand, others: &[Stand]) -> Stand {
+        let laws = |stand: &Stand| -> Vec<usize> {
+            let laws = stand.parts.iter().filter(|part| self.cause(&part.trial).law.is_some());
+            laws.flat_map(|part| part.trial.columns.iter().copied()).collect()
+        };
+        let fewer = |other: &&Stand| {
+            let gone = best.parts.len().saturating_sub(other.parts.len());
+            gone > 0
+                && laws(other) == laws(&best)
+                && self.good(other) > self.good(&best) - (LEAST_GAIN + PER_CAUSE) * gone as f64
+        };
+        let told = others.iter().filter(fewer);
+        told.max_by(|one, other| self.good(one).total_cmp(&self.good(other))).cloned().unwrap_or(best)
     }
 
     /// Whether a set with a law says in fewer causes what another says. As many as there may be at most are too many: they

@@ -277,6 +277,7 @@ fn beside(
     let mut lasting: Vec<Stand> = Vec::new();
     let mut best: Option<Stand> = None;
     let mut as_good: Option<Stand> = None;
+    let mut smaller: Vec<Stand> = Vec::new();
     let is_sound_set = |stand: &Stand| {
         !state.impossible(&stand.parts, &stand.estimate)
             && state.works_widely(stand, &found.stand)
@@ -329,12 +330,15 @@ fn beside(
                 && (plainer || more > DOUBT * margin)
                 && !(has_a_window && state.paraphrases(&stand, &found.stand));
             if able && clearly && state.is_better(&stand, best.as_ref()) {
-                best = Some(stand);
+                smaller.extend(best.replace(stand));
+            } else if able && clearly {
+                smaller.push(stand);
             } else if (able || doubtful) && state.is_better(&stand, as_good.as_ref()) {
                 as_good = Some(stand);
             }
         }
     }
+    best = best.map(|best| state.without_a_patch(best, &smaller));
     lasting.retain(|stand| is_sound_set(stand));
     let foretells = state.that_foretells(&found, lasting, sought.kind);
     if let Some(concluded) = foretells.and_then(|stand| concluded(&state, stand, &found)) {

@@ -1,7 +1,8 @@
 //! Windows between the points of their grid: what sets in and ends at the same times of every run.
 //!
 //! A grid of eighths begins and ends seconds beside what is there, and beside a force that steps in and out each edge leaves more than any
-//! other cause that is free to follow it; so a window is moved to where it belongs before causes are compared.
+//! other cause that is free to follow it; so a window is moved to where it belongs before causes are compared. What sets in above a speed
+//! is as well: runs that are driven alike show the one as the other.
 
 use crate::balances::balance::System;
 use crate::causes::trial::{Pool, Trial, add_trial};
@@ -10,7 +11,7 @@ use crate::choosing::sharpen::{How, judge, likeliest, moved};
 use crate::choosing::state::{Part, State};
 use crate::{Case, DiagnoseError};
 
-/// Adds the likeliest window of each cause that has one, as it is by itself.
+/// Adds the likeliest window of each cause that has one, and the likeliest ramp, as it is by itself.
 pub fn windows(case: &Case, system: &System, pool: &mut Pool) -> Result<(), DiagnoseError> {
     let state = State { case, system, pool, fit: &case.fit };
     let Some(first) = state.settle(&[], &system.noises(&system.residual, &case.fit)) else { return Ok(()) };
@@ -19,7 +20,11 @@ pub fn windows(case: &Case, system: &System, pool: &mut Pool) -> Result<(), Diag
         |state: &State, trial: &Trial| state.likely(&[Part { trial: trial.clone(), spread: None }], &noises);
     let nothing = state.likely(&[], &noises).unwrap_or(f64::INFINITY);
     let mut best: Vec<(usize, Vec<f64>, f64)> = Vec::new();
-    for trial in pool.trials.iter().filter(|trial| case.causes[trial.cause].window().is_some()) {
+    let moves = |trial: &&Trial| {
+        let cause = &case.causes[trial.cause];
+        cause.window().is_some() || cause.ramp().is_some()
+    };
+    for trial in pool.trials.iter().filter(moves) {
         let Some(gain) = likely(&state, trial) else { continue };
         match best.iter_mut().find(|one| one.0 == trial.cause) {
             Some(one) if one.2 >= gain => {}

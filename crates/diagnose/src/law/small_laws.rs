@@ -67,16 +67,24 @@ impl SmallLaw {
 }
 
 /// A loss of an electric drive that is free because it is small, and is not: a consumer of its shape, which no search can
-/// find beside it.
-pub fn outgrown(case: &mut Case, pool: &mut Pool, found: &Found) -> Option<Part> {
-    /// What is so many times its usual size is not small.
-    const MOST: f64 = 4.0;
+/// find beside it, and the column of what is free.
+pub fn outgrown(case: &mut Case, pool: &mut Pool, found: &Found) -> Option<(Part, usize)> {
+    /// What is so many times its usual size is not small,
+    const MOST: f64 = 3.0;
+    /// where it is known by so many standard deviations.
+    const SURE: f64 = 8.0;
     let of = |law: &'static SmallLaw| {
         let (_, small) = pool.small.iter().find(|(id, _)| *id == law.small)?;
         let position = found.used.iter().position(|used| used == small)?;
         let value = found.estimate.beta[position];
         let sd = found.estimate.covariance[(position, position)].sqrt();
-        (value >= MOST * pool.sd[*small]).then_some((value / pool.sd[*small], law, *small, value, sd))
+        (value >= MOST * pool.sd[*small] && value > SURE * sd).then_some((
+            value / pool.sd[*small],
+            law,
+            *small,
+            value,
+            sd,
+        ))
     };
     let all = SMALL_LAWS.iter().filter_map(of);
     let (_, law, small, value, sd) = all.max_by(|one, other| one.0.total_cmp(&other.0))?;
@@ -101,5 +109,5 @@ pub fn outgrown(case: &mut Case, pool: &mut Pool, found: &Found) -> Option<Part>
         cost: 0.0,
     };
     let column = pool.columns[small].iter().map(|rows| rows * value).collect();
-    Some(put(case, pool, Cause::of_law(text, Kind::Battery), column))
+    Some((put(case, pool, Cause::of_law(text, Kind::Battery), column), small))
 }

@@ -233,11 +233,6 @@ fn candidates(
             candidates.push(start.iter().cloned().chain([part]).collect());
         }
     }
-    if sought.kind == Kind::Battery
-        && let Some(part) = outgrown(case, pool, found)
-    {
-        candidates.push(found.stand.parts.iter().cloned().chain([part]).collect());
-    }
     Ok(Candidates { sets: candidates, powers })
 }
 
@@ -267,6 +262,9 @@ fn beside(
 ) -> Result<Told, DiagnoseError> {
     let rows = system.row_count_of(sought.kind);
     let Candidates { sets, powers } = candidates(case, system, pool, &found, sought)?;
+    if let Some(other) = with_a_large_loss(case, system, pool, &found, sought.kind) {
+        return Ok((other, None));
+    }
     let state = State { case, system, pool, fit: &case.fit };
     let alone = found.tried.first().and_then(|round| round.causes.first()).map_or(0.0, |one| one.2);
     let within = |stand: &Stand| {
@@ -371,6 +369,43 @@ fn beside(
         state.sets_as_good(&mut found, std::slice::from_ref(other));
     }
     Ok((found, as_good))
+}
+
+/// What was found with a loss of the electric drive beside it that was free because it is small, and is not: it is free no more, and has to
+/// say what the rows show of it.
+fn with_a_large_loss(
+    case: &mut Case,
+    system: &System,
+    pool: &mut Pool,
+    found: &Found,
+    kind: Kind,
+) -> Option<Found> {
+    /// What a loss may be that is told by its name, as a share of what is usual.
+    const NOTHING: f64 = 1e-3;
+    if kind != Kind::Battery || found.stand.parts.len() >= MOST_CAUSES {
+        return None;
+    }
+    let (part, small) = outgrown(case, pool, found)?;
+    let usual = pool.sd[small];
+    pool.sd[small] = NOTHING * usual;
+    let state = State { case, system, pool, fit: &case.fit };
+    let told = || {
+        let first = state.settle(&[], &found.first.noises)?;
+        let before = state.settle(&found.stand.parts, &first.noises)?;
+        let base = concluded(&state, before, &Found { first, ..found.clone() })?;
+        let parts: Vec<Part> = found.stand.parts.iter().cloned().chain([part]).collect();
+        let with = state.settle(&parts, &found.stand.noises)?;
+        let sound = !state.impossible(&with.parts, &with.estimate)
+            && state.works_widely(&with, &base.stand)
+            && state.sensible(&with)
+            && state.keeps_to_priors(&with, &found.stand);
+        if sound { state.with_a_law(with, &base) } else { None }
+    };
+    let told = told();
+    if told.is_none() {
+        pool.sd[small] = usual;
+    }
+    told
 }
 
 /// A law without one of its terms, each in turn, and each term by itself: what was left out may be a listed cause that the

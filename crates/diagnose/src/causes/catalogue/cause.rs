@@ -163,7 +163,7 @@ impl Cause {
     }
 
     /// Places of the speed at which a ramp begins and of its width among the terms, where it has one.
-    fn ramp(&self) -> Option<(usize, usize)> {
+    pub fn ramp(&self) -> Option<(usize, usize)> {
         self.places("threshold_m_s", "width_m_s")
     }
 

@@ -342,24 +342,10 @@ fn beside(
     if let Some(concluded) = foretells.and_then(|stand| concluded(&state, stand, &found)) {
         return Ok((concluded, None));
     }
-    // A law that was found by itself has what stood in for the listed causes beside it: it is looked for once more beside them.
-    if let Some(stand) = best.clone() {
-        let listed = state.listed(&stand);
-        let terms = state.pieces(&stand) - listed.len();
-        if !listed.is_empty()
-            && rows <= MANY_ROWS
-            && let Some(law) = first_sound(case, laws(case, system, pool, &listed, &stand, sought)?, sought)
-            && law.terms <= terms
-        {
-            let part = add(case, system, pool, &law, sought);
-            let state = State { case, system, pool, fit: &case.fit };
-            let parts: Vec<Part> = listed.into_iter().chain([part]).collect();
-            best = state
-                .settle(&parts, &stand.noises)
-                .filter(|other| state.good(other) > state.good(&stand) && state.sensible(other))
-                .or(Some(stand));
-        }
-    }
+    let best = match best {
+        Some(best) if rows <= MANY_ROWS => Some(once_more(case, system, pool, best, sought)?),
+        best => best,
+    };
     let state = State { case, system, pool, fit: &case.fit };
     let mut found = found;
     if let Some(other) = best.and_then(|best| state.with_a_law(best, &found)) {
@@ -369,6 +355,29 @@ fn beside(
         state.sets_as_good(&mut found, std::slice::from_ref(other));
     }
     Ok((found, as_good))
+}
+
+/// A law that was found by itself has what stood in for the listed causes beside it: it is looked for once more beside them.
+fn once_more(
+    case: &mut Case,
+    system: &System,
+    pool: &mut Pool,
+    best: Stand,
+    sought: &Sought,
+) -> Result<Stand, DiagnoseError> {
+    let state = State { case, system, pool, fit: &case.fit };
+    let listed = state.listed(&best);
+    let terms = state.pieces(&best) - listed.len();
+    if listed.is_empty() {
+        return Ok(best);
+    }
+    let told = first_sound(case, laws(case, system, pool, &listed, &best, sought)?, sought);
+    let Some(law) = told.filter(|law| law.terms <= terms) else { return Ok(best) };
+    let part = add(case, system, pool, &law, sought);
+    let state = State { case, system, pool, fit: &case.fit };
+    let parts: Vec<Part> = listed.into_iter().chain([part]).collect();
+    let better = |other: &Stand| state.good(other) > state.good(&best) && state.sensible(other);
+    Ok(state.settle(&parts, &best.noises).filter(better).unwrap_or(best))
 }
 
 /// What was found with a loss of the electric drive beside it that was free because it is small, and is not: it is free no more, and has to

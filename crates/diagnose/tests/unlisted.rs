@@ -429,28 +429,22 @@ fn a_consumer_by_a_law_of_speed_is_found_in_the_fuel_and_in_watts() {
     assert!((told / truth - 1.0).abs() < 0.15, "{told} W, {truth} W: {}", said.answer);
 }
 
-/// A fan that sets in at a speed, in a car whose battery has another resistance: what that brings in the voltage is no reason to
-/// miss what is left of the power.
-#[test]
-fn a_consumer_above_a_speed_is_found_beside_another_resistance_of_the_battery() {
-    const HIDDEN: &str = r#"battery_resistance(resistance_ohm: 0.09), expression(
-        auxiliary_power: "p_w * tanh(max(v - v0_m_s, 0) / v1_m_s)",
-        constants: {"p_w": 900.0, "v0_m_s": 4.0, "v1_m_s": 1.0})"#;
+/// Drives of the electric tractor at many speeds, those that come back at others.
+fn at_many_speeds(hidden: &str) -> String {
     const LEVELS_M_S: [u32; 10] = [6, 3, 8, 4, 9, 2, 7, 5, 9, 3];
-    /// Drives at many speeds, those that come back at others.
-    fn drives(hidden: &str) -> String {
-        let level = |speed_m_s: u32| {
-            format!("Reach(speed_m_s: {speed_m_s}, acceleration_m_s2: 0.4), Hold(for_s: 8), ")
-        };
-        let text = scenario(0.069, hidden, "");
-        let (before, rest) = text.split_once("cycle: [").unwrap();
-        let (_, after) = rest.split_once("effects").unwrap();
-        let back = r#""180 deg""#;
-        let others =
-            r#""180 deg", "cycle.0.speed_m_s": 4.5, "cycle.4.speed_m_s": 3.5, "cycle.8.speed_m_s": 5.5"#;
-        let cycle = LEVELS_M_S.map(level).concat();
-        format!("{before}cycle: [{cycle}],\n    effects{after}").replace(back, others)
-    }
+    let level =
+        |speed_m_s: u32| format!("Reach(speed_m_s: {speed_m_s}, acceleration_m_s2: 0.4), Hold(for_s: 8), ");
+    let text = scenario(0.069, hidden, "");
+    let (before, rest) = text.split_once("cycle: [").unwrap();
+    let (_, after) = rest.split_once("effects").unwrap();
+    let back = r#""180 deg""#;
+    let others = r#""180 deg", "cycle.0.speed_m_s": 4.5, "cycle.4.speed_m_s": 3.5, "cycle.8.speed_m_s": 5.5"#;
+    let cycle = LEVELS_M_S.map(level).concat();
+    format!("{before}cycle: [{cycle}],\n    effects{after}").replace(back, others)
+}
+
+/// What is found in those drives with something hidden in them, by the torque of the motor and the battery.
+fn found_at_many_speeds(hidden: &str) -> Diagnosed {
     let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
         "speed_m_s" => value + 0.02 * draws.normal(),
         "motor_torque_n_m" => value + 0.5 * draws.normal(),
@@ -459,12 +453,39 @@ fn a_consumer_above_a_speed_is_found_beside_another_resistance_of_the_battery() 
     };
     let channels = ["speed_m_s", "position_m", "motor_torque_n_m", "battery_voltage_v", "battery_current_a"];
     let registry = headland_stock::registry();
-    let recording = recording_of_scenario(&drives(HIDDEN), &registry, &channels, (8, &noisy));
-    let found = found_of_scenario(&drives(""), &recording, &Options::default(), &registry).unwrap();
+    let recording = recording_of_scenario(&at_many_speeds(hidden), &registry, &channels, (8, &noisy));
+    found_of_scenario(&at_many_speeds(""), &recording, &Options::default(), &registry).unwrap()
+}
+
+/// A fan that sets in at a speed, in a car whose battery has another resistance: what that brings in the voltage is no reason to
+/// miss what is left of the power.
+#[test]
+fn a_consumer_above_a_speed_is_found_beside_another_resistance_of_the_battery() {
+    const HIDDEN: &str = r#"battery_resistance(resistance_ohm: 0.09), expression(
+        auxiliary_power: "p_w * tanh(max(v - v0_m_s, 0) / v1_m_s)",
+        constants: {"p_w": 900.0, "v0_m_s": 4.0, "v1_m_s": 1.0})"#;
+    let found = found_at_many_speeds(HIDDEN);
     let said = &found.diagnosis;
     assert!(named(&found, "battery_resistance") && named(&found, "unlisted"), "{}", said.answer);
     let law = said.findings.iter().find(|finding| finding.id == "unlisted").unwrap();
     assert_eq!((law.balance, law.depends_on.clone()), (Kind::Battery, vec!["speed_m_s".to_owned()]));
+}
+
+/// Every drive loses some of its power with the square of its force, and that is free: three to four times what is usual is told by its
+/// size, which what is usual would hide.
+#[test]
+fn a_loss_by_the_square_of_the_force_that_is_not_small_is_told_by_its_size() {
+    const POWER_W: f64 = 4200.0;
+    let hidden = format!(
+        r#"expression(auxiliary_power: "p_w * (F_drive / f_n)^2", constants: {{"p_w": {POWER_W:?}, "f_n": 10000.0}})"#
+    );
+    let found = found_at_many_speeds(&hidden);
+    let said = &found.diagnosis;
+    let [law] = &said.findings[..] else { panic!("{}", said.answer) };
+    assert_eq!(law.kind, FindingKind::Unlisted, "{}", said.answer);
+    assert_eq!(law.depends_on, ["tractive_force_n"], "{:?}", law.equation);
+    let at_10_kn_w = 100.0 * law.parameters[0].value;
+    assert!((at_10_kn_w / POWER_W - 1.0).abs() < 0.15, "{at_10_kn_w} W: {}", said.answer);
 }
 
 /// An engine that was driven just before starts warm: two of four runs start cold, and only fuel tells of it.

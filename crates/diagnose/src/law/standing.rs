@@ -19,6 +19,8 @@ const BETTER: f64 = 0.1;
 const SIMPLER: f64 = 0.03;
 /// And by no share where numbers alone patch each other: one term that says more than two of them would not, were they true.
 const PLAINER: f64 = 4.5;
+/// Nothing that is known is so many standard deviations wrong.
+const STRAINED: f64 = 3.5;
 /// A law works in at least this share of the rows, by the participation ratio of its squares,
 const EVERYWHERE: f64 = 0.04;
 /// or in this one where it brings so much more than the listed causes: bends and starts are short.
@@ -52,6 +54,10 @@ impl State<'_> {
     pub fn margin(&self, found: &Found, stand: &Stand) -> f64 {
         if self.simpler(stand, &found.stand) && found.stand.parts.iter().all(|part| part.spread.is_none()) {
             return PLAINER;
+        }
+        // A shape that is known from elsewhere and needs a parameter to be what it cannot be is not the one that is there.
+        if self.relieves(stand, &found.stand) {
+            return MARGIN;
         }
         // Nor has what is switched with time. And what shows where the law does nothing, as the resistance of a battery does in its
         // voltage, leaves nothing there that a formula could bend to; nor does a map that stays where a law is simpler.
@@ -124,25 +130,36 @@ impl State<'_> {
     /// Whether a set leaves the free parameters where they are known to be, or at least where another has them: a law that
     /// takes the place of what is known says nothing new. One that brings many times what a parameter's drift costs does.
     pub fn keeps_to_priors(&self, stand: &Stand, other: &Stand) -> bool {
-        /// Nothing that is known is so many standard deviations wrong.
-        const MOST: f64 = 3.5;
         /// As far as another has it, but for what any two estimates differ by.
         const ABOUT: f64 = 1.15;
         /// What a drift may cost of what a set brings.
         const LITTLE: f64 = 0.05;
         let more = (worth(stand) - worth(other)).max(0.0);
         // The square of a drift counts half in ln p.
-        let most = MOST.max((2.0 * LITTLE * more).sqrt());
-        let strains = |stand: &Stand| -> Vec<f64> {
-            let own =
-                (0..self.pool.nuisance).map(|column| stand.estimate.beta[column] / self.pool.sd[column]);
-            let mut strains: Vec<f64> = own.collect();
-            for (column, strain) in self.stand_ins(stand) {
-                strains[column] += strain;
-            }
-            strains.into_iter().map(f64::abs).collect()
+        let most = STRAINED.max((2.0 * LITTLE * more).sqrt());
+        let pairs = self.strains(stand).into_iter().zip(self.strains(other));
+        pairs.into_iter().all(|(strain, other)| strain < most.max(ABOUT * other))
+    }
+
+    /// How far each free parameter, and each small error that is free, is from where it is known to be, in standard deviations.
+    fn strains(&self, stand: &Stand) -> Vec<f64> {
+        let own = (0..self.pool.nuisance).map(|column| stand.estimate.beta[column] / self.pool.sd[column]);
+        let mut strains: Vec<f64> = own.collect();
+        for (column, strain) in self.stand_ins(stand) {
+            strains[column] += strain;
+        }
+        strains.into_iter().map(f64::abs).collect()
+    }
+
+    /// Whether a set leaves the free parameters where they are known to be, and another has one of them where it cannot be.
+    fn relieves(&self, stand: &Stand, other: &Stand) -> bool {
+        /// Share of the strain.
+        const MUCH: f64 = 0.5;
+        let greatest = |stand: &Stand| {
+            self.strains(stand).into_iter().take(self.case.study.parameters.len()).fold(0.0, f64::max)
         };
-        strains(stand).into_iter().zip(strains(other)).all(|(strain, other)| strain < most.max(ABOUT * other))
+        let (own, other) = (greatest(stand), greatest(other));
+        other > STRAINED && own < STRAINED && own < MUCH * other
     }
 
     /// Listed causes of a set that do to the rows what a free parameter does, each with the column of that one and by how many of

@@ -1,6 +1,7 @@
 //! What was found, with its values and the proof of it.
 
 use crate::causes::catalogue::Class;
+use crate::causes::clocks::DRIFT;
 use crate::causes::trial::Pool;
 use crate::choosing::search::Found;
 use crate::choosing::state::{Part, State};
@@ -60,13 +61,27 @@ impl Proven {
             && self.proof.held_out.as_ref().is_some_and(worse)
     }
 
-    /// Whether all that is claimed is faults of sensors, and runs held out are worse without them.
+    /// Whether all that is claimed is faults of sensors, and runs held out are worse without them, or no better to speak of where far more
+    /// than noise is left of all that a clock would set right.
     pub fn only_makes_up_faults(&self) -> bool {
         let mut claimed = self.refined.causes.iter();
         !self.refined.causes.is_empty()
             && self.withheld.is_none()
             && claimed.all(|cured| cured.cause.class == Class::Artefact)
-            && self.worsened().is_some_and(|ratio| ratio > 1.0 + RISES)
+            && self.worsened().is_some_and(|ratio| ratio > 1.0 + RISES || self.is_no_clock(ratio))
+    }
+
+    /// Whether a delay or a clock is told that leaves most of the error in all runs, and far more than noise.
+    fn is_no_clock(&self, left: f64) -> bool {
+        /// Times the noise, and share of the error.
+        const FAR: f64 = 5.0;
+        const MOST: f64 = 0.7;
+        let fitted = &self.proof.fitted;
+        let clocks = |cured: &Cured| ["latency", DRIFT].contains(&cured.cause.id);
+        self.refined.causes.iter().all(clocks)
+            && left > MOST
+            && fitted.after > MOST * fitted.before
+            && fitted.after > FAR * self.proof.noise
     }
 
     /// What became of one of the parts of what was found, where it is still claimed.

@@ -154,6 +154,28 @@ fn a_pull_of_single_runs_is_told_beside_a_load_that_comes() {
     assert!(inside >= 6 && all <= inside + 1, "{:?}", pull.stretches);
 }
 
+/// Let down and lifted within two seconds at the same times of every run: a pull that is there at once would leave another pull at each edge,
+/// which a formula draws, and none of that is a cause.
+#[test]
+fn an_implement_that_is_let_down_slowly_pulls_in_one_window() {
+    const HIDDEN: [(&str, f64); 5] =
+        [("force_n", 5000.0), ("linear_n_s_m", 300.0), ("from_s", 71.3), ("to_s", 133.6), ("ramp_s", 2.0)];
+    let registry = headland_stock::registry();
+    let text = HIDDEN.map(|(name, value)| format!("{name}: {value:?}")).join(", ");
+    let pulls = |_| format!("drawbar_load({text})");
+    let recording = of_runs(&LAST, (700, 100.0), &BY_FORCE, &registry, &pulls);
+    let found = found_of_scenario(&drive(""), &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    let [pull] = &said.findings[..] else { panic!("{}", said.answer) };
+    assert_eq!(pull.id, "drawbar_load", "{}", said.answer);
+    for (name, truth) in HIDDEN {
+        let told = pull.parameters.iter().find(|one| one.name == name);
+        let told = told.unwrap_or_else(|| panic!("no {name}: {}", said.answer)).value;
+        let near = if name.ends_with("_s") && name != "ramp_s" { 0.1 } else { 0.1 * truth };
+        assert!((told - truth).abs() < near, "{name}: {told} for {truth}: {}", said.answer);
+    }
+}
+
 /// A governor answers each slope with force: what is in proportion to it would take a share of them, as a loss of the drive does.
 #[test]
 fn force_that_answers_slopes_is_no_loss_of_the_drive() {

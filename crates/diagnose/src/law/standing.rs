@@ -207,7 +207,7 @@ impl State<'_> {
     }
 
     /// A set with a law, or one with fewer listed causes beside the same one, where that is worse by less than the best of many causes
-    /// takes to be one: what it had more patches the law.
+    /// takes to be one: what it had more patches the law. Of what is as good the one of fewer terms is told.
     pub fn without_a_patch(&self, best: Stand, others: &[Stand]) -> Stand {
         let laws = |stand: &Stand| -> Vec<usize> {
             let laws = stand.parts.iter().filter(|part| self.cause(&part.trial).law.is_some());
@@ -219,7 +219,10 @@ impl State<'_> {
                 && laws(other) == laws(&best)
                 && self.good(other) > self.good(&best) - (LEAST_GAIN + PER_CAUSE) * gone as f64
         };
-        let told = others.iter().filter(fewer);
+        let plainer = |other: &&Stand| {
+            self.pieces(other) < self.pieces(&best) && self.good(other) > self.good(&best) - TOLERANCE
+        };
+        let told = others.iter().filter(|other| fewer(other) || plainer(other));
         told.max_by(|one, other| self.good(one).total_cmp(&self.good(other))).cloned().unwrap_or(best)
     }
 

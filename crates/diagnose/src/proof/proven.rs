@@ -74,7 +74,7 @@ impl Proven {
     /// Whether a delay or a clock is told that leaves most of the error in all runs, and far more than noise.
     fn is_no_clock(&self, left: f64) -> bool {
         /// Times the noise, and share of the error.
-        const FAR: f64 = 5.0;
+        const FAR: f64 = 3.0;
         const MOST: f64 = 0.7;
         let fitted = &self.proof.fitted;
         let clocks = |cured: &Cured| ["latency", DRIFT].contains(&cured.cause.id);

@@ -28,6 +28,8 @@ pub fn drifted_force(time_s: &[f64], index: usize, rate: f64) -> f64 {
 /// accelerometer says, else by recorded places, by when the force is nought, and by the power of the engine. Without any of them the
 /// speed's is named.
 pub fn force_runs_apart(runs: &[Recorded], rate: f64) -> bool {
+    /// Mean squares that differ by less are both of noise.
+    const MORE_THAN_NOISE: f64 = 1.5;
     if !runs.iter().all(|run| run.measured.trace.get(FORCE).is_some()) {
         return false;
     }
@@ -46,7 +48,9 @@ pub fn force_runs_apart(runs: &[Recorded], rate: f64) -> bool {
     }
     let as_recorded = |run: &Recorded| run.measured.trace.get(FORCE).unwrap_or_default().to_vec();
     let in_time = |run: &Recorded| moved(run, &as_recorded(run), drifted_force);
-    if let (Some(kept), Some(late)) = (while_free(runs, &as_recorded), while_free(runs, &in_time)) {
+    if let (Some(kept), Some(late)) = (while_free(runs, &as_recorded), while_free(runs, &in_time))
+        && kept.max(late) > MORE_THAN_NOISE * kept.min(late)
+    {
         return late < kept;
     }
     let engine = |run: &Recorded| run.engine_w.clone();

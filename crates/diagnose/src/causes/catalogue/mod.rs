@@ -141,9 +141,12 @@ fn windows(duration_s: f64) -> Vec<Vec<f64>> {
 }
 
 /// An implement that is let down and lifted at the same times of every run, at once or within a while.
-fn let_down(pull: Term, weight: f64, ramp: Option<Term>) -> Cause {
+fn let_down((pull, weight, duration_s): (Term, f64, f64), ramp: Option<Term>) -> Cause {
+    /// What begins before this share of the longest run was there from the start, and no window.
+    const EARLIEST: f64 = 0.05;
     let linear = linear("linear_n_s_m", "N s/m", 0.004 * weight);
-    let terms = [pull, linear, shape("from_s", "s"), shape("to_s", "s")];
+    let from = shape("from_s", "s").within(EARLIEST * duration_s, f64::INFINITY);
+    let terms = [pull, linear, from, shape("to_s", "s")];
     cause(
         "drawbar_load",
         MOTION,
@@ -401,6 +404,7 @@ pub fn causes(around: &Around) -> Vec<Cause> {
     let taus: Vec<Vec<f64>> = taus.map(|tau| vec![tau]).collect();
     // An implement can pull as much as the ground can hold.
     let pull = positive("force_n", "N", 0.02 * weight).within(0.0, weight);
+    let implement = (pull, weight, around.duration_s);
     let mut all = vec![
         cause(
             "wind",
@@ -549,9 +553,9 @@ pub fn causes(around: &Around) -> Vec<Cause> {
             "an implement or trailer that was not recorded",
             "repeat without it, or log the drawbar force",
         ),
-        let_down(pull, weight, None).shaped(windows(around.duration_s)),
+        let_down(implement, None).shaped(windows(around.duration_s)),
         // Looked for where the one that is let down at once was found.
-        let_down(pull, weight, Some(shape(RAMP, "s").within(SHORTEST_RAMP_S, LONGEST_RAMP_S)))
+        let_down(implement, Some(shape(RAMP, "s").within(SHORTEST_RAMP_S, LONGEST_RAMP_S)))
             .shaped(Vec::new()),
         cause(
             "speed_threshold",

@@ -289,19 +289,11 @@ mod tests {
     use super::*;
     use crate::law::{Law, write};
     use crate::polish::Polished;
-    use crate::problem::{Bench, Problem, Rows, Target};
+    use crate::problem::{AsTheyAre, Bench, Problem, Target};
     use crate::variable::Variable;
     use headland_effect::Expression;
     use headland_plugin::{Air, Place, Registry, Situation};
     use nalgebra::DMatrix;
-
-    struct AsTheyAre;
-
-    impl Rows for AsTheyAre {
-        fn rows(&self, _: usize, samples: &[f64]) -> Vec<f64> {
-            samples.to_vec()
-        }
-    }
 
     /// Every variable changes, at a pace of its own.
     fn situations() -> Vec<Situation> {

@@ -67,6 +67,17 @@ pub trait Rows: Sync {
     }
 }
 
+/// Samples that are rows by themselves.
+#[cfg(test)]
+pub(crate) struct AsTheyAre;
+
+#[cfg(test)]
+impl Rows for AsTheyAre {
+    fn rows(&self, _: usize, samples: &[f64]) -> Vec<f64> {
+        samples.to_vec()
+    }
+}
+
 /// A free parameter of the model that is estimated beside every law.
 #[derive(Clone, Debug)]
 pub struct Nuisance {

@@ -62,19 +62,10 @@ fn rows(
 mod tests {
     use super::kept;
     use crate::polish::amplitudes;
-    use crate::problem::{Bench, Problem, Rows, Target};
-    use crate::shape::Factor;
-    use crate::shape::Shape;
+    use crate::problem::{AsTheyAre, Bench, Problem, Target};
+    use crate::shape::{Factor, Shape};
     use crate::term::Term;
     use crate::variable::{Enters, Variable};
-
-    struct AsTheyAre;
-
-    impl Rows for AsTheyAre {
-        fn rows(&self, _: usize, samples: &[f64]) -> Vec<f64> {
-            samples.to_vec()
-        }
-    }
 
     /// Two sensors of one acceleration, each with a noise of its own, and the share that the second leaves of a law of the first.
     fn share(residual: impl Fn(f64, f64) -> f64) -> f64 {

@@ -109,17 +109,12 @@ fn speed_against_places(runs: &[Recorded], rate: f64) -> Option<bool> {
     let inverse = matrix.try_inverse()?;
     let told = inverse * vector;
     // Steps overlap, so that so many of them are one at most.
-    let overlapping = (2.0 * HALF_S * count as f64 / runs.iter().map(length_s).sum::<f64>()).max(1.0);
+    let lasts_s: f64 = runs.iter().map(|run| run.measured.trace.duration_s()).sum();
+    let overlapping = (2.0 * HALF_S * count as f64 / lasts_s).max(1.0);
     let variance = (square - told.dot(&vector)).max(0.0) / count as f64;
     let sd = (variance * inverse[(1, 1)] * overlapping).sqrt();
     let beyond = (told[1] - 0.5 * rate) * rate.signum();
     (count > 2 && beyond.abs() > CLEARLY * sd).then_some(beyond > 0.0)
-}
-
-/// How long a run lasts [s].
-fn length_s(run: &Recorded) -> f64 {
-    let time_s = run.measured.trace.time_s();
-    time_s[time_s.len() - 1] - time_s[0]
 }
 
 /// Mean square of a force while a switch says that nothing drives, in all runs that have one [N²]; none where none has.

@@ -33,6 +33,11 @@ struct Weighed {
 
 /// Factor by which a shape is moved.
 const FACTOR: f64 = 1.05;
+/// What sets in or ends at a time.
+const EDGES: [&str; 2] = ["from_s", "to_s"];
+/// Standard deviation of how late a logger shows a speed by its own filter [s]: receivers and filters of a bus delay by up to a tenth of a
+/// second, and none says by how much.
+pub const FILTER_SD_S: f64 = 0.04;
 /// A shape of which the recordings say nothing is known by this share of itself: its grid is spaced like that.
 const UNKNOWN: f64 = 0.5;
 
@@ -86,6 +91,10 @@ fn of_one(
         let curvature = (2.0 * middle.score - low.score - high.score) / (step * step);
         let share = if curvature > 0.0 { curvature.sqrt().recip().min(UNKNOWN) } else { UNKNOWN };
         widths[term] = share * value.abs();
+        // What a filter delays began earlier than it shows.
+        if EDGES.contains(&cause.terms[term].name) {
+            widths[term] = widths[term].hypot(FILTER_SD_S);
+        }
         for (column, linear) in accepted.trial.terms.iter().enumerate() {
             let moves = (high.own[column] - low.own[column]) / (2.0 * step);
             widths[*linear] = widths[*linear].hypot(share * moves);

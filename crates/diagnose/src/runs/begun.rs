@@ -10,6 +10,7 @@
 
 use crate::causes::sensors::{corrected, small_latency_s};
 use crate::proof::refine::HALF_95;
+use crate::proof::widths::FILTER_SD_S;
 use crate::runs::recorded::Recorded;
 use crate::runs::said::Said;
 use crate::soundness::faults::{Fault, place};
@@ -28,8 +29,10 @@ const FILTERED_S: f64 = 0.05;
 const WINDOW_S: f64 = 2.5;
 /// Delays are tried so far apart [s].
 const STEP_S: f64 = 0.01;
-/// Fewer runs may have begun late by chance.
+/// Fewer runs may have begun late by chance …
 const FEWEST: usize = 3;
+/// … but for as many whose accelerometer shows that they slow down from their begin on.
+const FEWEST_SHOWN: usize = 2;
 /// Growth of ln p from which on a bend is none of the noise.
 const LEAST_GAIN: f64 = 20.0;
 /// The bend is as deep as a delay makes it, within this share.
@@ -69,12 +72,12 @@ pub fn late(case: &Case) -> Option<Late> {
     let coasts = case.coasts();
     let coasting = || case.runs.iter().zip(&case.nominal).zip(&coasts).filter(|(_, coasts)| **coasts);
     let begins: Vec<Begin> = coasting().filter_map(|((run, said), _)| begin(run, said)).collect();
-    if begins.len() < FEWEST {
+    if begins.len() < FEWEST_SHOWN {
         return None;
     }
     let told = told(&begins)?;
     let sensor = in_neutral(coasting().map(|(both, _)| both), told.value);
-    let known = sensor == Some(true) || !coasts.contains(&false);
+    let known = sensor == Some(true) || !coasts.contains(&false) && begins.len() >= FEWEST;
     (known && told.value > small_latency_s(case)).then_some(Late { sensor, ..told })
 }
 
@@ -134,6 +137,8 @@ pub fn set_right(
         ));
         return Ok(None);
     }
+    // Nobody knows how much of what comes late the logger's filter delayed, which is no fault.
+    let half = HALF_95 * late.sd.hypot(FILTER_SD_S);
     Ok(Some(Fault {
         id: LATENCY,
         channel: "speed_m_s".to_owned(),

@@ -68,7 +68,8 @@ fn is_late(found: &Diagnosed) {
     assert_eq!((said.findings.len(), said.findings[0].id.as_str()), (1, "latency"), "{}", said.answer);
     let [low, high] = said.findings[0].parameters[0].ci95;
     let truth_s = 0.05 * LATE as f64;
-    assert!((low..=high).contains(&truth_s) && high - low < 0.1, "{low} to {high} s");
+    // Nobody knows by how much the logger's own filter delays.
+    assert!((low..=high).contains(&truth_s) && high - low < 0.25, "{low} to {high} s");
     // And the improved recording is set right by it.
     let (channel, latency_s, _, _) = &found.corrections[0];
     assert!(channel == "speed_m_s" && (low..=high).contains(latency_s), "{:?}", found.corrections);

@@ -78,6 +78,8 @@ pub struct Function {
 
 /// Knots of a group are at most so many: a drive of 25 minutes has as many rows of a second, and they tell no more.
 const MOST_KNOTS: f64 = 1500.0;
+/// What may jump anywhere has a knot at every so many rows of the balance that shows it: a step shows in two.
+pub const KNOTS_OF_JUMPS: f64 = 2.0;
 /// Knots to one length of the process, enough to find it.
 pub const COARSE: f64 = 2.0;
 /// Enough to draw it: the process is rough within its length.
@@ -148,7 +150,12 @@ impl<'a> Profile<'a> {
         self.extents
             .iter()
             .zip(&self.rows)
-            .map(|((from, to), rows)| {
+            .enumerate()
+            .map(|(number, ((from, to), rows))| {
+                let told = spread.jumps.as_ref().and_then(|jumps| Some((jumps.step, jumps.knots(number)?)));
+                if let Some((step, (from, count))) = told {
+                    return Group { from, step, count };
+                }
                 let range = (to - from).max(1e-9);
                 let wanted =
                     spread.jumps.as_ref().map_or(spread.length / spread.knots_per_length, |jumps| jumps.step);
@@ -267,6 +274,29 @@ pub fn innovation(group: &Group, spread: &Spread) -> f64 {
 }
 
 impl Spread {
+    /// A function that stays and then jumps on knots `step` apart, whose usual size is `scale`: between jumps it wanders by its size in so many
+    /// times its steps, and jumps find their own size.
+    pub fn jumping(step: f64, scale: f64) -> Self {
+        const LENGTHS: f64 = 200.0;
+        const SIZE: f64 = 0.3;
+        Self {
+            length: LENGTHS * step,
+            size: SIZE * scale,
+            knots_per_length: COARSE,
+            jumps: Some(Jumps::unknown(step)),
+            shared: false,
+        }
+    }
+
+    /// The same function, for one of this scale, where nothing is known of its increments.
+    pub fn afresh(&self, scale: f64) -> Self {
+        match &self.jumps {
+            Some(jumps) if jumps.is_told() => Self::jumping(KNOTS_OF_JUMPS * jumps.step, scale),
+            Some(jumps) => Self { jumps: Some(Jumps::unknown(jumps.step)), ..self.clone() },
+            None => self.clone(),
+        }
+    }
+
     /// Factor of the precision of an increment.
     fn weight(&self, number: usize, increment: usize) -> f64 {
         self.jumps.as_ref().map_or(1.0, |jumps| jumps.weight(number, increment))
@@ -276,7 +306,7 @@ impl Spread {
     pub fn relaxed(&self, function: &Function) -> Self {
         /// The size may change so much in a round.
         const MOST: f64 = 3.0;
-        let Some(jumps) = &self.jumps else { return self.clone() };
+        let Some(jumps) = self.jumps.as_ref().filter(|jumps| !jumps.is_told()) else { return self.clone() };
         let (mut sum, mut count) = (0.0, 0usize);
         for (number, squares) in function.squares.iter().enumerate() {
             for (increment, square) in squares.iter().enumerate() {

@@ -1,11 +1,9 @@
 //! One cause more: the trials beside a set of causes, the best first.
 
-use crate::balances::balance::Kind;
 use crate::balances::gram::Reduced;
 use crate::balances::noise::Noises;
 use crate::causes::catalogue::{Cause, Form};
-use crate::causes::jumps::Jumps;
-use crate::causes::profile::{COARSE, Spread};
+use crate::causes::profile::{COARSE, KNOTS_OF_JUMPS, Spread};
 use crate::causes::trial::Trial;
 use crate::choosing::search::rank;
 use crate::choosing::state::{Part, Stand, State};
@@ -95,9 +93,13 @@ impl State<'_> {
             let mut parts = stand.parts.clone();
             parts.push(part);
             let settled = self.settle(&parts, &noises)?;
-            let possible =
-                !self.impossible(&settled.parts, &settled.estimate) && self.functions_possible(&settled);
-            possible.then_some(Contest { stand: settled })
+            let possible = |stand: &Stand| {
+                !self.impossible(&stand.parts, &stand.estimate) && self.functions_possible(stand)
+            };
+            let stepped = self.stepped(&settled);
+            let able = [Some(settled), stepped].into_iter().flatten().filter(possible);
+            let stand = able.max_by(|one, other| one.score.total_cmp(&other.score))?;
+            Some(Contest { stand })
         };
         let mut judged: Vec<Contest> = finalists.into_par_iter().filter_map(settled).collect();
         judged.sort_by(|one, other| rank(&other.stand, self).total_cmp(&rank(&one.stand, self)));
@@ -172,30 +174,16 @@ impl State<'_> {
 
     /// Functions that stay and then jump.
     fn jumping(&self, stand: &Stand, out: &dyn Fn(&Cause) -> bool, quiet: &Noises) -> Vec<(Part, Noises)> {
-        /// What is switched is found on knots this many blocks apart.
-        const BLOCKS: f64 = 2.0;
-        /// Between jumps a function wanders by its size in so many times its steps, and jumps find their own size.
-        const LENGTHS: f64 = 200.0;
-        const SIZE: f64 = 0.3;
         let switched = self.pool.trials.iter().filter(|trial| {
             let cause = self.cause(trial);
             cause.is_switched() && !out(cause) && self.apart(trial, &stand.parts)
         });
-        // A battery shows what is switched better than fuel, in which an engine's power is much of the noise.
-        let place = |wanted: Kind| self.system.kinds.iter().position(|kind| *kind == wanted);
-        let shown = place(Kind::Battery).or_else(|| place(Kind::Shaft)).or_else(|| place(Kind::Fuel));
-        let Some(step) = shown.map(|number| BLOCKS * self.system.blocks_s[number]) else {
+        let Some(step) = self.shows_switching().map(|number| KNOTS_OF_JUMPS * self.system.blocks_s[number])
+        else {
             return Vec::new();
         };
         let part = |trial: &Trial| {
-            let size = SIZE * self.cause(trial).terms[0].scale;
-            let spread = Spread {
-                length: LENGTHS * step,
-                size,
-                knots_per_length: COARSE,
-                jumps: Some(Jumps::unknown(step)),
-                shared: false,
-            };
+            let spread = Spread::jumping(step, self.cause(trial).terms[0].scale);
             (Part { trial: trial.clone(), spread: Some(spread) }, quiet.clone())
         };
         switched.map(part).collect()

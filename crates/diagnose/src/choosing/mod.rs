@@ -14,5 +14,6 @@ pub(crate) mod rivals;
 pub(crate) mod search;
 pub(crate) mod sharpen;
 pub(crate) mod state;
+pub(crate) mod stepped;
 pub(crate) mod together;
 pub(crate) mod windows;

@@ -5,7 +5,6 @@
 //! above a cube. So other powers are tried, and a law whose course takes more than it gives comes first.
 
 use crate::causes::catalogue::ELECTRIC;
-use crate::causes::jumps::Jumps;
 use crate::causes::profile::Function;
 use crate::choosing::state::{Part, Stand, State};
 
@@ -15,14 +14,16 @@ impl State<'_> {
         let named = |part: &&Part| names.contains(&self.id(&part.trial));
         let anew = |part: &Part| {
             let mut part = part.clone();
-            if let Some(spread) = &mut part.spread {
-                spread.jumps = spread.jumps.as_ref().map(|jumps| Jumps::unknown(jumps.step));
+            if let Some(spread) = part.spread.as_mut().filter(|spread| spread.jumps.is_some()) {
+                *spread = spread.afresh(self.cause(&part.trial).terms[0].scale);
             }
             part
         };
         let others = set.parts.iter().filter(|part| !named(part)).cloned();
         let parts: Vec<Part> = others.chain(found.parts.iter().filter(named).map(anew)).collect();
-        self.settle(&parts, &found.noises)
+        let settled = self.settle(&parts, &found.noises)?;
+        let stepped = self.stepped(&settled).filter(|stepped| stepped.score > settled.score);
+        Some(stepped.unwrap_or(settled))
     }
 
     /// Whether a consumer of a set that takes a course of time gives back more than it takes.

@@ -342,6 +342,52 @@ fn consumers_that_each_run_switches_at_times_of_its_own_are_told() {
     assert!(edges.iter().all(|[off, on]| (on - off).abs() > 10_000.0), "{edges:?}: {}", said.answer);
 }
 
+/// Consumers that each run switches every dozen seconds, to one power and another: a course that wanders as fast gives back what it takes.
+#[test]
+fn consumers_that_each_run_switches_many_times_are_told_in_steps() {
+    const POWERS_W: [f64; 7] = [7000.0, 0.0, 4500.0, 0.0, 9000.0, 0.0, 6000.0];
+    let registry = headland_stock::registry();
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "fuel_rate_kg_s" => value + 8e-5 * draws.normal(),
+        _ => value,
+    };
+    let times_s = |run: usize| -> Vec<f64> {
+        let (first_s, apart_s) = (6.0 + 3.0 * run as f64, 11.0 + 1.3 * run as f64);
+        (0..=POWERS_W.len()).map(|edge| first_s + apart_s * edge as f64).collect()
+    };
+    let of = |run: usize| {
+        let times_s = times_s(run);
+        let hidden = format!(
+            "    effects: [auxiliary_power(times_s: {times_s:?}, powers_w: {POWERS_W:?})],\n    free:"
+        );
+        let text = LONG.replacen("    free:", &hidden, 1);
+        recording_of_scenario(&text, &registry, &["speed_m_s", "fuel_rate_kg_s"], (71, &noisy))
+    };
+    let mut recording = of(0);
+    for run in 1..recording.runs.len() {
+        recording.runs[run] = of(run).runs[run].clone();
+    }
+    let found = found_of_scenario(&LONG, &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    let ids: Vec<&str> = said.findings.iter().map(|finding| finding.id.as_str()).collect();
+    assert_eq!((said.verdict, ids), (Verdict::MissingPhysics, vec!["auxiliary_power"]), "{}", said.answer);
+    // What stays between edges has no length over which it forgets itself.
+    assert!(said.findings[0].parameters.iter().all(|one| !one.name.starts_with("length")), "{}", said.answer);
+    let course = &found.effects[0].trace;
+    let power_w = course.get("auxiliary_power_w").unwrap();
+    let at_w = |piece: usize| {
+        let times_s = times_s(0);
+        let middle_s = 0.5 * (times_s[piece] + times_s[piece + 1]);
+        power_w[course.time_s().partition_point(|own_s| *own_s < middle_s)]
+    };
+    let off_w = at_w(1);
+    for piece in [0, 2, 6] {
+        let share = (at_w(piece) - off_w) / (at_w(4) - off_w);
+        assert!((share - POWERS_W[piece] / POWERS_W[4]).abs() < 0.1, "{piece}: {share}: {}", said.answer);
+    }
+}
+
 /// A fan that turns with the engine, by the cube of its speed, beside such a consumer: a course of each run draws both, and tells nothing of
 /// the run that is held out.
 #[test]

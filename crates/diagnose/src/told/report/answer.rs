@@ -1,6 +1,6 @@
 //! Puts the answer together.
 
-use super::finding::{Doubts, faulty, findings, verdict};
+use super::finding::{Doubts, FAR_BY_ROWS, faulty, findings, verdict};
 use super::series::{corrections, effects, residuals};
 use super::shown::shown;
 use super::{Calibrated, Diagnosed, Diagnosis, Fit, FitRuns, Tried, Verdict, bands};
@@ -56,6 +56,7 @@ pub fn report(
     let unfollowed = over_time(refined) && !fit.is_followed();
     let unlike = refined.causes.iter().find_map(Cured::is_unlike_its_kind);
     let courses = refined.is_switched_alone();
+    let scatter = scatter(case, system, found);
     let verdict = if beside.withheld.is_some() {
         Verdict::CannotTell
     } else {
@@ -68,6 +69,7 @@ pub fn report(
                 courses,
                 slight: slight || unfollowed || unlike.is_some(),
                 strain,
+                scatter: scatter.map_or(0.0, |(_, scatter)| scatter),
             },
         )
     };
@@ -96,6 +98,7 @@ pub fn report(
         balances: &system.kinds,
         before: &before,
         strain,
+        scatter: scatter.filter(|(_, scatter)| *scatter > FAR_BY_ROWS),
         slight,
         unfollowed,
         unlike,
@@ -228,12 +231,7 @@ fn fit(case: &Case, system: &System, found: Option<&Found>, proof: &Proof) -> Fi
         (Some(held), noise) if noise > 0.0 => held.after / noise,
         (None, noise) if noise > 0.0 => proof.fitted.after / noise,
         // Without a noise of its own the signal is judged by the rows: all of their scatter over that of neighbours.
-        _ => found.map_or(f64::NAN, |found| {
-            let stand = &found.stand;
-            let quiet = system.quiet(&stand.left, &case.fit, &stand.noises);
-            let each = stand.noises.each.iter().zip(&quiet.each);
-            each.map(|(all, quiet)| all.sd() / quiet.sd()).fold(0.0, f64::max)
-        }),
+        _ => found.and_then(|found| scatter(case, system, found)).map_or(f64::NAN, |(_, scatter)| scatter),
     };
     Fit {
         signal: proof.signal.to_owned(),
@@ -241,6 +239,15 @@ fn fit(case: &Case, system: &System, found: Option<&Found>, proof: &Proof) -> Fi
         held_out: proof.held_out.as_ref().map(|errors| runs(false, errors)),
         lack_of_fit: lack,
     }
+}
+
+/// Scatter of the rows of the balance that closes worst, over what neighbouring rows show.
+fn scatter(case: &Case, system: &System, found: &Found) -> Option<(Kind, f64)> {
+    let stand = &found.stand;
+    let quiet = system.quiet(&stand.left, &case.fit, &stand.noises);
+    let each = system.kinds.iter().zip(stand.noises.each.iter().zip(&quiet.each));
+    let each = each.map(|(kind, (all, quiet))| (*kind, all.sd() / quiet.sd()));
+    each.max_by(|one, other| one.1.total_cmp(&other.1))
 }
 
 /// The free parameters that could be told.

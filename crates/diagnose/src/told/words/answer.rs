@@ -22,6 +22,8 @@ pub struct Told<'a> {
     pub before: &'a Map,
     /// The free parameter that ends furthest from what was known of it, and by how many standard deviations.
     pub strain: Option<(&'a Free, f64)>,
+    /// The balance whose rows scatter by far more than neighbouring ones say, and how many times as much.
+    pub scatter: Option<(Kind, f64)>,
     /// Whether any cause may as well be none.
     pub slight: bool,
     /// Whether all that was found are functions of time that do not follow the runs they were made of.
@@ -65,10 +67,19 @@ pub fn answer(told: &Told) -> String {
             "Nothing is missing: what differs is explained by the free parameters within their priors and by noise."
                 .to_owned(),
         ),
-        Verdict::CannotTell if told.withheld.is_none() && told.findings.is_empty() => sentences.push(
-            "Something is missing, and no cause explains it in these recordings better than chance would, so none is claimed."
-                .to_owned(),
-        ),
+        Verdict::CannotTell if told.withheld.is_none() && told.findings.is_empty() => {
+            sentences.push(
+                "Something is missing, and no cause explains it in these recordings better than chance would, so none is \
+                 claimed."
+                    .to_owned(),
+            );
+            sentences.extend(told.scatter.map(|(kind, scatter)| {
+                format!(
+                    "Row by row, what is left of {} scatters {scatter:.1} times as much as neighbouring rows differ by.",
+                    kind.sides()
+                )
+            }));
+        }
         Verdict::CannotTell if told.withheld.is_none() => sentences.push(doubt(told)),
         _ => {}
     }

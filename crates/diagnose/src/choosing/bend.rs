@@ -7,10 +7,11 @@
 
 use crate::balances::balance::Kind;
 use crate::balances::gram::Column;
+use crate::balances::noise::Noises;
 use crate::causes::catalogue::{Cause, Form};
 use crate::causes::profile::COARSE;
 use crate::causes::trial::{Pool, Trial, add_trial_at, effect, effect_beside, for_run};
-use crate::choosing::search::Found;
+use crate::choosing::search::{Found, TOLERANCE};
 use crate::choosing::state::{Part, Stand, State};
 use crate::proof::mirror::{is_whole, lean};
 use crate::runs::recorded::Recorded;
@@ -61,8 +62,6 @@ pub fn bend(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> Res
             pool.trials.iter().filter(same).for_each(&mut consider);
         }
     }
-    // An engine that holds back burns nothing, however much less it would be asked for: where that ends the free parameters say.
-    let fuel = system.has(Kind::Fuel);
     let mut added = false;
     for trial in chosen {
         let accepted = found.accepted.iter().any(|one| one.trial.columns == trial.columns);
@@ -72,22 +71,65 @@ pub fn bend(case: &Case, system: &System, pool: &mut Pool, found: &Found) -> Res
             .map(|one| Part { trial: one.trial.clone(), spread: None })
             .collect();
         let noises = if accepted { &found.noises.1 } else { &found.noises.0 };
-        let size = |pool: &Pool, trial: &Trial| -> Option<Size> {
-            let state = State { case, system, pool, fit: &case.fit };
-            let mut parts = others.clone();
-            parts.push(Part { trial: trial.clone(), spread: None });
-            let (_, beta) = state.weighed(&parts, noises)?;
-            let first = beta.len() - trial.columns.len();
-            let own = beta.iter().skip(first).copied().collect();
-            let parameters = case.study.parameters.iter().zip(beta.iter());
-            let free = parameters.map(|(parameter, change)| {
-                (parameter.value + change).clamp(parameter.bounds.0, parameter.bounds.1)
-            });
-            Some(Size { own, free: fuel.then(|| free.collect()) })
-        };
+        let size = |pool: &Pool, trial: &Trial| size(case, system, pool, trial, (&others, noises));
         added |= bent(case, system, pool, &trial, &size)?;
     }
     Ok(levelled(case, system, pool, found)? || added)
+}
+
+/// A set whose listed causes have columns made at the size that they have in it, where the recordings do not deny it: beside a law they are of
+/// another size than without it, and so are the free parameters, which may have stood in for the law.
+pub fn beside_a_law(
+    case: &Case,
+    system: &System,
+    pool: &mut Pool,
+    set: Stand,
+) -> Result<Stand, DiagnoseError> {
+    let mut best = set;
+    for place in 0..best.parts.len() {
+        let part = best.parts[place].clone();
+        let cause = &case.causes[part.trial.cause];
+        if cause.form != Form::Parameters || cause.law.is_some() || part.spread.is_some() {
+            continue;
+        }
+        let mut parts = best.parts.clone();
+        parts.remove(place);
+        let size = |pool: &Pool, trial: &Trial| size(case, system, pool, trial, (&parts, &best.noises));
+        if !bent(case, system, pool, &part.trial, &size)? {
+            continue;
+        }
+        let Some(trial) = pool.trials.last().cloned() else { continue };
+        let state = State { case, system, pool, fit: &case.fit };
+        let mut parts = best.parts.clone();
+        parts[place].trial = trial;
+        if let Some(anew) =
+            state.settle(&parts, &best.noises).filter(|anew| anew.score > best.score - TOLERANCE)
+        {
+            best = anew;
+        }
+    }
+    Ok(best)
+}
+
+/// What a trial is beside other causes at a noise.
+fn size(
+    case: &Case,
+    system: &System,
+    pool: &Pool,
+    trial: &Trial,
+    (others, noises): (&[Part], &Noises),
+) -> Option<Size> {
+    let state = State { case, system, pool, fit: &case.fit };
+    let mut parts = others.to_vec();
+    parts.push(Part { trial: trial.clone(), spread: None });
+    let (_, beta) = state.weighed(&parts, noises)?;
+    let first = beta.len() - trial.columns.len();
+    let own = beta.iter().skip(first).copied().collect();
+    let parameters = case.study.parameters.iter().zip(beta.iter());
+    let free = parameters
+        .map(|(parameter, change)| (parameter.value + change).clamp(parameter.bounds.0, parameter.bounds.1));
+    // An engine that holds back burns nothing, however much less it would be asked for: where that ends the free parameters say.
+    Some(Size { own, free: system.has(Kind::Fuel).then(|| free.collect()) })
 }
 
 /// Adds a wind that blows otherwise in each run, where it is accepted or nearly, at what it is in each of them and along the axis that

@@ -6,6 +6,7 @@ use crate::balances::balance::Kind;
 use crate::balances::gram::Column;
 use crate::causes::catalogue::{Cause, Form, LawText};
 use crate::causes::trial::{Pool, Trial};
+use crate::choosing::bend;
 use crate::choosing::search::{Found, MOST_CAUSES, TOLERANCE, concluded, worth};
 use crate::choosing::state::{Part, Stand, State};
 use crate::law::formula::{Sought, laws};
@@ -343,7 +344,10 @@ fn beside(
         return Ok((concluded, None));
     }
     let best = match best {
-        Some(best) if rows <= MANY_ROWS => Some(once_more(case, system, pool, best, sought)?),
+        Some(best) if rows <= MANY_ROWS => {
+            let best = bend::beside_a_law(case, system, pool, best)?;
+            Some(once_more(case, system, pool, best, sought)?)
+        }
         best => best,
     };
     let state = State { case, system, pool, fit: &case.fit };

@@ -325,13 +325,19 @@ fn is_shaped(cause: &Cause) -> bool {
     free && (cause.form == Form::Parameters || cause.by_run) && !cause.blows_by_run()
 }
 
-/// The likeliest shape of a cause that is reached by moving one parameter at a time.
+/// The likeliest shape of a cause that is reached by moving one parameter at a time, and a ramp about its end as well as about its begin.
 pub fn moved(
     case: &Case,
     (cause, start): (usize, &[f64]),
     mut likely: impl FnMut(&[f64]) -> Result<f64, DiagnoseError>,
 ) -> Result<Vec<f64>, DiagnoseError> {
     let terms: Vec<_> = case.causes[cause].terms.iter().filter(|term| !term.linear).collect();
+    let place = |wanted: &str| terms.iter().position(|term| term.name == wanted);
+    let ramp = case.causes[cause].ramp().and(place("threshold_m_s").zip(place("width_m_s")));
+    let along = |shape: &[f64], way: usize, factor: f64| match shape.get(way) {
+        Some(value) => (*value != 0.0 && !terms[way].is_held()).then(|| scaled(shape, way, factor)),
+        None => ramp.map(|ramp| about_its_end(shape, ramp, factor)),
+    };
     let mut shape = start.to_vec();
     let mut greatest = likely(&shape)?;
     let mut factor = FACTOR;
@@ -339,13 +345,9 @@ pub fn moved(
         // At one factor until nothing is better.
         for _ in 0..MOST_MOVES {
             let mut moved = false;
-            for place in 0..shape.len() {
-                if terms[place].is_held() || shape[place] == 0.0 {
-                    continue;
-                }
+            for way in 0..=shape.len() {
                 for factor in [factor, 1.0 / factor] {
-                    let mut other = shape.clone();
-                    other[place] *= factor;
+                    let Some(other) = along(&shape, way, factor) else { continue };
                     let gain = likely(&other)?;
                     if gain > greatest {
                         (shape, greatest, moved) = (other, gain, true);
@@ -360,4 +362,29 @@ pub fn moved(
         factor = factor.sqrt();
     }
     Ok(shape)
+}
+
+/// A ramp whose width is times a factor and whose end stays, by the places of its begin and its width.
+fn about_its_end(shape: &[f64], (begin, width): (usize, usize), factor: f64) -> Vec<f64> {
+    let mut other = scaled(shape, width, factor);
+    other[begin] += shape[width] - other[width];
+    other
+}
+
+/// A shape with one parameter times a factor.
+fn scaled(shape: &[f64], place: usize, factor: f64) -> Vec<f64> {
+    let mut other = shape.to_vec();
+    other[place] *= factor;
+    other
+}
+
+#[cfg(test)]
+mod tests {
+    use super::about_its_end;
+
+    #[test]
+    fn a_ramp_that_is_moved_about_its_end_ends_where_it_did() {
+        let [begin, width] = about_its_end(&[3.3, 0.3], (0, 1), 1.5)[..] else { panic!("two numbers") };
+        assert!((width - 0.45).abs() < 1e-12 && (begin + width - 3.6).abs() < 1e-12, "{begin} {width}");
+    }
 }

@@ -17,6 +17,9 @@ const UNLIKE: f64 = 0.02;
 /// Where something is as good as a cause anyway, what comes close to it is named as well: odds of one to a hundred and fifty.
 pub const TOLERANCE_IN_DOUBT: f64 = 5.0;
 
+/// A shape was moved to where it suits best, which ln p does not count: so much it is worth by chance.
+const PER_SHAPE: f64 = 1.5;
+
 /// A map of places that says this much of what a course of each run says stands beside it.
 const OF_PLACES: f64 = 0.7;
 
@@ -54,7 +57,8 @@ impl State<'_> {
         for other in &side.contests {
             let Some(own) = other.stand.parts.last() else { continue };
             let listed = rivals.iter().any(|rival| self.case.causes[rival.cause].id == self.id(&own.trial));
-            let behind = best.score - other.stand.score;
+            let moved = self.shapes(&side.part.trial).saturating_sub(self.shapes(&own.trial));
+            let behind = best.score - other.stand.score - PER_SHAPE * moved as f64;
             let one_way = self.is_place_told_one_way(&side.part.trial, &own.trial);
             let gain = other.stand.score - lesser.score;
             let shared = gain > OF_PLACES * (best.score - lesser.score)
@@ -82,6 +86,11 @@ impl State<'_> {
             });
         }
         if doubtful { rivals } else { Vec::new() }
+    }
+
+    /// How many numbers of a cause were moved to where they suit best.
+    fn shapes(&self, trial: &Trial) -> usize {
+        self.cause(trial).terms.iter().filter(|term| !term.linear && !term.is_held()).count()
     }
 
     /// Whether one cause is a formula and the other a power that takes a course of its own in each run: the one foretells runs, the

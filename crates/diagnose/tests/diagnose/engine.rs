@@ -365,6 +365,7 @@ fn consumers_that_each_run_switches_many_times_are_told_in_steps() {
         recording_of_scenario(&text, &registry, &["speed_m_s", "fuel_rate_kg_s"], (71, &noisy))
     };
     let mut recording = of(0);
+    recording.runs.truncate(3);
     for run in 1..recording.runs.len() {
         recording.runs[run] = of(run).runs[run].clone();
     }

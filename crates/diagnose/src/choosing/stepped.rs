@@ -2,6 +2,7 @@
 //!
 //! The rows of a run are cut into parts of one level each so that Σ −½ (Σ c r)² / (σ² Σ c²) + β k is least, c what a level of one does to a
 //! row, r what the rows show of the function, k the number of edges, β what an edge has to bring. The least is found by dynamic programming.
+//! Rows count as if none knew of another here, and the noise of the balance judges what comes of it.
 //! Increments of any size everywhere describe what is switched many times at length: most of them are nothing, and each says so by itself.
 //! Source: Jackson et al., "An algorithm for optimal partitioning of data on an interval", *IEEE Signal Processing Letters* 12 (2005) 105.
 
@@ -37,6 +38,7 @@ impl State<'_> {
         if self.system.row_count() > MANY_ROWS {
             return None;
         }
+        stand.parts.last()?.spread.as_ref()?.jumps.as_ref()?;
         let mut noise = self.quiet(stand).each[self.shows_switching()?].sd();
         let mut best: Option<Stand> = None;
         for _ in 0..ROUNDS {

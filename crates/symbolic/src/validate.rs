@@ -4,6 +4,8 @@
 //! on the others, the constants along their derivatives. The error of the fold is the deviance of its rows under what
 //! the others predict, nuisances uncertain as they then are:
 //! eᵀ(σ²(1 + X A⁻¹ Xᵀ))⁻¹e + ln|1 + X A⁻¹ Xᵀ|, with A the information of the others and e = y − X β.
+//! Added is what the derivatives promise beyond the constants of the law as it is: one whose constants stand at an end of what
+//! they may be bends no further, whatever a straight line along them says.
 //! Source: Bishop, *Pattern Recognition and Machine Learning* (2006), section 3.3.2.
 
 use crate::polish::Polished;
@@ -87,18 +89,19 @@ impl Judge {
             total.add(gram, 1.0);
         }
         let whole = total.matrix.clone().cholesky()?;
+        let estimate = whole.solve(&total.vector);
+        let as_it_is = total.solved_for(self.nuisances.len() + own)?;
         let mut folds = Vec::with_capacity(grams.len());
         for gram in &grams {
             let mut others = total.clone();
             others.add(gram, -1.0);
             let trained = others.matrix.clone().cholesky()?;
-            let estimate = trained.solve(&others.vector);
+            let promised = gram.plain_error(&as_it_is) - gram.plain_error(&estimate);
             folds.push((
-                gram.error(&estimate, |error| whole.solve(error)),
+                gram.error(&trained.solve(&others.vector), |error| whole.solve(error)) + promised,
                 log_determinant(&whole) - log_determinant(&trained),
             ));
         }
-        let estimate = whole.solve(&total.vector);
         let unseen = self.unseen(bench, law, &scale, &total, &estimate);
         let first = self.nuisances.len();
         let count = all.len() - first;
@@ -175,10 +178,22 @@ impl Gram {
         self.scalar += sign * other.scalar;
     }
 
+    /// The best estimate with all but the first so many at nought; none where these rows do not tell one.
+    fn solved_for(&self, first: usize) -> Option<DVector<f64>> {
+        let matrix = self.matrix.view((0, 0), (first, first)).into_owned();
+        let solved = matrix.cholesky()?.solve(&self.vector.rows(0, first).into_owned());
+        Some(solved.resize_vertically(self.vector.len(), 0.0))
+    }
+
+    /// Squared error of an estimate on these rows.
+    fn plain_error(&self, estimate: &DVector<f64>) -> f64 {
+        let along = &self.vector - &self.matrix * estimate;
+        self.scalar - estimate.dot(&self.vector) - estimate.dot(&along)
+    }
+
     /// Squared error of an estimate on these rows, once it may still move as far as it is uncertain.
     fn error(&self, estimate: &DVector<f64>, solve: impl Fn(&DVector<f64>) -> DVector<f64>) -> f64 {
         let along = &self.vector - &self.matrix * estimate;
-        let plain = self.scalar - estimate.dot(&self.vector) - estimate.dot(&along);
-        (plain - along.dot(&solve(&along))).max(0.0)
+        (self.plain_error(estimate) - along.dot(&solve(&along))).max(0.0)
     }
 }

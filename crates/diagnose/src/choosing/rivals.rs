@@ -253,15 +253,24 @@ impl State<'_> {
                         &self.sd(),
                     )
                 };
-                let likest = replaced.into_iter().map(|place| (place, like(&place)));
+                let likest = replaced.iter().map(|place| (*place, like(place)));
                 // What is like none of them explains something else, and a formula that is one of them says it in other words,
                 // unless those are fewer.
                 let law = self.cause(&part.trial).law.is_some();
                 let plainer = self.numbers(&other.parts) < self.numbers(&found.stand.parts);
                 let other_words = |correlation: f64| law && !plainer && correlation > OTHER_WORDS;
-                let likest =
-                    likest.filter(|(_, correlation)| *correlation > UNLIKE && !other_words(*correlation));
-                if let Some((place, correlation)) = likest.max_by(|one, other| one.1.total_cmp(&other.1)) {
+                let alike: Vec<(usize, f64)> = likest
+                    .filter(|(_, correlation)| *correlation > UNLIKE && !other_words(*correlation))
+                    .collect();
+                let likest = alike.iter().copied().max_by(|one, other| one.1.total_cmp(&other.1));
+                // A law that does alone what several do together stands beside each of them.
+                let whole = law && plainer && replaced.len() > 1 && likest.is_some();
+                let beside = if whole {
+                    replaced.iter().map(|place| (*place, like(place))).collect()
+                } else {
+                    likest.into_iter().collect::<Vec<_>>()
+                };
+                for (place, correlation) in beside {
                     let gain = found.accepted[place].gain + worth(other) - best;
                     let cause = part.trial.cause;
                     found.accepted[place].rivals.push(Rival {

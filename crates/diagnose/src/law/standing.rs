@@ -17,8 +17,9 @@ const BETTER: f64 = 0.1;
 /// By this share where it needs fewer causes than they do, and functions are among those: two that patch each other are no
 /// knowledge.
 const SIMPLER: f64 = 0.03;
-/// And by no share where numbers alone patch each other: one term that says more than two of them would not, were they true.
-const PLAINER: f64 = 4.5;
+/// And by no share where numbers alone patch each other, odds of twenty to one are enough: one term that says more than two of them
+/// would not, were they true.
+const PLAINER: f64 = 3.0;
 /// Nothing that is known is so many standard deviations wrong.
 const STRAINED: f64 = 3.5;
 /// A law works in at least this share of the rows, by the participation ratio of its squares,

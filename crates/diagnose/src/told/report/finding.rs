@@ -39,6 +39,7 @@ pub fn findings(
                 id: case.causes[rival.cause].id.to_owned(),
                 squared_correlation: rival.squared_correlation,
                 evidence: rival.gain,
+                equation: law_of(&case.causes[rival.cause]),
             })
             .collect();
         findings.push(FindingReport {
@@ -66,6 +67,11 @@ pub fn findings(
     }
     findings.sort_by(|one, other| other.share_of_mismatch.total_cmp(&one.share_of_mismatch));
     findings
+}
+
+/// The equation of a law.
+fn law_of(cause: &Cause) -> Option<String> {
+    cause.law.is_some().then(|| cause.equation_text())
 }
 
 /// What a finding depends on: a latency on the channel that is late.
@@ -546,8 +552,12 @@ pub mod tests {
 
     /// A finding of some kind, and what it cannot be told from.
     pub fn finding(kind: FindingKind, id: &str, rival: Option<&str>) -> FindingReport {
-        let rival =
-            rival.map(|id| RivalReport { id: id.to_owned(), squared_correlation: 1.0, evidence: 9.0 });
+        let rival = rival.map(|id| RivalReport {
+            id: id.to_owned(),
+            squared_correlation: 1.0,
+            evidence: 9.0,
+            equation: None,
+        });
         FindingReport {
             kind,
             id: id.to_owned(),

@@ -84,6 +84,9 @@ pub struct RivalReport {
     pub squared_correlation: f64,
     /// Growth of ln p in the place of the cause that was named.
     pub evidence: f64,
+    /// The equation of a law, which has no other name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub equation: Option<String>,
 }
 
 /// A finding.

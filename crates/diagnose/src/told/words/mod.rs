@@ -91,14 +91,22 @@ pub fn sentence(
             format!("A sensor is at fault: {} ({values})", cause.words)
         }
     };
-    let rivals: Vec<String> =
-        cured.accepted.rivals.iter().map(|rival| causes[rival.cause].words.to_owned()).collect();
+    let rivals: Vec<String> = cured.accepted.rivals.iter().map(|rival| named(&causes[rival.cause])).collect();
     let others = if rivals.is_empty() {
         String::new()
     } else {
         format!("; these recordings cannot tell {them} from {}", number::either(&rivals))
     };
     format!("{what}; {it} {:.0} % of the mismatch in the {} balance{others}.", 100.0 * share, kind.name())
+}
+
+/// A rival as a sentence names it: a law with its equation and its numbers, for it has no other name.
+fn named(rival: &Cause) -> String {
+    let Some(law) = &rival.law else { return rival.words.to_owned() };
+    let numbers =
+        law.constants.iter().map(|one| format!("{} {}", label(&one.name), quantity(one.value, &one.unit)));
+    let numbers = numbers.collect::<Vec<_>>().join(", ");
+    format!("{}, {} ({numbers})", rival.words, rival.equation_text())
 }
 
 /// The values of a finding in a sentence.

@@ -308,31 +308,36 @@ impl State<'_> {
         })
     }
 
-    /// Whether a law of a set says the same as a listed cause in other words, which can be what it would have to be then.
-    pub fn is_listed(&self, stand: &Stand) -> bool {
+    /// Whether a law of a set says the same as a listed cause in other words, which can be what it would have to be then. Beside what is far
+    /// larger than the noise two shapes are alike that the rows tell apart all the same.
+    pub fn is_listed(&self, stand: &Stand, first: &Stand) -> bool {
         let Some(reduced) = self.reduced(&stand.noises, &[]) else { return true };
         let nuisance: Vec<usize> = (0..self.pool.nuisance).collect();
         let sd = self.sd();
         let laws = stand.parts.iter().filter(|part| self.cause(&part.trial).law.is_some());
         laws.into_iter().any(|law| {
+            // What each run has for itself says whatever differs between them, in more numbers than a reason for it.
+            let numbers = self.numbers(std::slice::from_ref(law));
+            let anything = |trial: &Trial| self.cause(trial).by_run && trial.columns.len() > numbers;
             let listed = self.pool.trials.iter().filter(|trial| {
                 let cause = self.cause(trial);
-                cause.law.is_none() && !cause.is_function()
+                cause.law.is_none() && !cause.is_function() && !anything(trial)
             });
             let same = |trial: &&Trial| {
                 reduced.squared_correlation(&law.trial.columns, &trial.columns, &nuisance, &sd) > OTHER_WORDS
             };
-            listed.filter(same).any(|trial| self.can_stand_for(law, trial, stand))
+            let least = worth(stand) - MARGIN - BETTER * (worth(stand) - worth(first)).max(0.0);
+            listed.filter(same).any(|trial| self.can_stand_for(law, trial, stand, least))
         })
     }
 
-    /// Whether a set with a listed cause in the place of a law can be.
-    pub fn can_stand_for(&self, law: &Part, trial: &Trial, stand: &Stand) -> bool {
+    /// Whether a set with a listed cause in the place of a law can be, and makes the recordings as likely as it has to at least.
+    fn can_stand_for(&self, law: &Part, trial: &Trial, stand: &Stand, least: f64) -> bool {
         let others = stand.parts.iter().filter(|part| part.trial.columns != law.trial.columns);
         let own = Part { trial: trial.clone(), spread: None };
         let parts: Vec<Part> = others.cloned().chain([own]).collect();
         self.settle(&parts, &stand.noises)
-            .is_some_and(|other| !self.impossible(&other.parts, &other.estimate))
+            .is_some_and(|other| worth(&other) > least && !self.impossible(&other.parts, &other.estimate))
     }
 
     /// Whether a law of a set says in other words what one or two listed causes say together.

@@ -316,7 +316,7 @@ fn beside(
             let sound = is_sound_set(&stand);
             let able = sound
                 && (clearly || simpler && more > -TOLERANCE)
-                && (simpler || !state.is_listed(&stand))
+                && (simpler || !state.is_listed(&stand, &found.first))
                 && (simpler && clearly || !state.paraphrases(&stand, &found.stand));
             // What says it better than the listed causes, and not by enough, is a doubt of them, whatever it is like, but for the edges
             // of a window: how it sets in and ends is no cause of its own.

@@ -10,7 +10,7 @@ use crate::proof::mirror::is_whole;
 use crate::proof::prove::{Errors, Measure, prove};
 use crate::proof::proven::{Proven, RISES, held_out, is_worse};
 use crate::proof::refine::Cured;
-use crate::proof::simpler::simpler;
+use crate::proof::simpler::{shorter, simpler};
 use crate::single_runs::events::Event;
 use crate::soundness::faults::Fault;
 use crate::told::words::each_once;
@@ -69,6 +69,7 @@ pub fn proven(
         withdrawn = true;
     }
     best = simpler(case, system, pool, best, (events, by))?;
+    best = shorter(case, system, pool, best, (events, by))?;
     for place in (0..best.found.stand.parts.len()).rev() {
         if is_slight(case, &best, place)
             && let Some(found) = without(case, system, pool, &best.found, place)

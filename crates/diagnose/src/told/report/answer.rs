@@ -53,7 +53,7 @@ pub fn report(
     let strain = refined.strain(case);
     let own = |cured: &Cured| cured.cause.class != Class::Artefact && cured.may_be_none();
     let slight = refined.causes.iter().any(own);
-    let unfollowed = over_time(refined) && !fit.is_followed();
+    let unfollowed = over_time(refined, &fit) && !fit.is_followed();
     let unlike = refined.causes.iter().find_map(Cured::is_unlike_its_kind);
     let courses = refined.is_switched_alone();
     let scatter = scatter(case, system, found);
@@ -208,9 +208,10 @@ fn timed(refined: &Refined) -> bool {
     refined.causes.iter().any(|cured| cured.in_single_runs() || cured.takes_its_own_course())
 }
 
-/// Whether all that was found is functions of time.
-fn over_time(refined: &Refined) -> bool {
-    let of_time = |cured: &Cured| cured.cause.form == Form::OverTime;
+/// Whether all that was found is functions of time, but for one that all runs share and that foretells those held out.
+fn over_time(refined: &Refined, fit: &Fit) -> bool {
+    let shared = |cured: &Cured| cured.function().is_some_and(|function| function.spread.shared);
+    let of_time = |cured: &Cured| cured.cause.form == Form::OverTime && !(shared(cured) && fit.is_foretold());
     !refined.causes.is_empty() && refined.causes.iter().all(of_time)
 }
 

@@ -15,6 +15,7 @@ use crate::soundness::faults::Fault;
 use crate::told::level::level;
 use crate::told::locate::stretches;
 use crate::told::words;
+use headland_calibrate::statistics::median;
 
 /// The findings, by their share of the mismatch.
 pub fn findings(
@@ -480,18 +481,22 @@ fn with_image(from: f64, image: f64, half: f64) -> [f64; 2] {
 }
 
 fn function_parameters(cause: &Cause, function: &crate::causes::profile::Function) -> Vec<ParameterReport> {
+    /// So many times as uncertain as the middle one of all knots is hardly known.
+    const KNOWN: f64 = 2.0;
     let term = &cause.terms[0];
-    // The largest value over all groups, with its own band.
+    // The largest value over all groups, with its own band. Along a path it is one that is about as well known as elsewhere: a knot beyond
+    // the last row was never driven over.
+    let sds: Vec<f64> = function.values.iter().flat_map(|(_, sds)| sds.iter().copied()).collect();
+    let most = if cause.form == Form::OverPosition { KNOWN * median(&sds) } else { f64::INFINITY };
     let mut peak = (0.0, 0.0);
     let (mut sum, mut count) = (0.0, 0usize);
-    for (values, sds) in &function.values {
-        for (value, sd) in values.iter().zip(sds.iter()) {
-            if value.abs() > f64::abs(peak.0) {
-                peak = (*value, *sd);
-            }
-            sum += value * value;
-            count += 1;
+    let pairs = function.values.iter().flat_map(|(values, sds)| values.iter().zip(sds.iter()));
+    for (value, sd) in pairs.filter(|(_, sd)| **sd <= most) {
+        if value.abs() > f64::abs(peak.0) {
+            peak = (*value, *sd);
         }
+        sum += value * value;
+        count += 1;
     }
     if let Some(level) = level(cause, function) {
         peak = level;

@@ -188,6 +188,18 @@ impl Fit {
         self.held_out.as_ref().is_some_and(FitRuns::grows)
     }
 
+    /// Whether runs held out are foretold far better than before, and about as well as those that were fitted.
+    pub(crate) fn is_foretold(&self) -> bool {
+        /// Share of the error before.
+        const FAR_BETTER: f64 = 0.5;
+        /// Errors of few runs differ by this factor.
+        const ABOUT: f64 = 1.3;
+        self.held_out.as_ref().is_some_and(|held_out| {
+            held_out.rmse_after < FAR_BETTER * held_out.rmse_before
+                && held_out.rmse_after < ABOUT * self.fitted.rmse_after
+        })
+    }
+
     /// Whether a signal is as near to the noise as what each run tells of itself can follow it, or hardly anything is left of the error: a force
     /// that was measured with noise of its own moves a speed by more than the noise of that.
     pub(crate) fn is_followed(&self) -> bool {

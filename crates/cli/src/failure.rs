@@ -34,6 +34,9 @@ pub enum Failure {
     /// The user interrupted.
     #[error("interrupted; everything that was finished is kept")]
     Interrupted,
+    /// The user interrupted what writes at its end alone.
+    #[error("interrupted; this is written when it is done, and nothing of it was")]
+    Unfinished,
 }
 
 impl Failure {
@@ -43,7 +46,7 @@ impl Failure {
             Self::Requirement(_) => REQUIREMENT,
             Self::Input(_) => INPUT,
             Self::Machine(_) => MACHINE,
-            Self::Interrupted => INTERRUPTED,
+            Self::Interrupted | Self::Unfinished => INTERRUPTED,
         }
     }
 
@@ -115,7 +118,7 @@ pub fn told_recording(error: &RecordingError) -> String {
 impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Self {
         match error {
-            StudyError::Interrupted => Self::Interrupted,
+            StudyError::Interrupted => Self::Unfinished,
             StudyError::Trace(error) => Self::Machine(error.to_string()),
             other => Self::Input(other.to_string()),
         }

@@ -29,7 +29,7 @@ impl Progress for Steps {
 impl From<DiagnoseError> for Failure {
     fn from(error: DiagnoseError) -> Self {
         match error {
-            DiagnoseError::Interrupted => Self::Interrupted,
+            DiagnoseError::Interrupted => Self::Unfinished,
             DiagnoseError::Study(error) => error.into(),
             other => Self::Input(other.to_string()),
         }

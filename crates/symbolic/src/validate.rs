@@ -197,3 +197,58 @@ impl Gram {
         (self.plain_error(estimate) - along.dot(&solve(&along))).max(0.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Judge;
+    use crate::polish::amplitudes;
+    use crate::problem::{AsTheyAre, Bench, Problem, Target};
+    use crate::shape::{Factor, Shape};
+    use crate::term::Term;
+    use crate::variable::{Enters, Variable};
+
+    /// A drag that goes with the curvature, of 1 kN in a bend of 50 m, held against one that fades with the way besides: along its derivative
+    /// a scale that may be no longer than 2500 m would do without the fading.
+    #[test]
+    fn a_law_is_judged_as_it_is_and_not_by_what_its_derivative_promises() {
+        let steps = || 0..200u16;
+        let runs = |of: &dyn Fn(u16, u16) -> f64| -> Vec<Vec<f64>> {
+            (0..4).map(|run| steps().map(|step| of(run, step)).collect()).collect()
+        };
+        let way_m = |_: u16, step: u16| 3.5 * f64::from(step);
+        let kappa_per_m = |run: u16, step: u16| 0.02 * (0.13 * f64::from(step) + f64::from(run)).sin().abs();
+        let noise_n = |run: u16, step: u16| 60.0 * (2.9 * f64::from(step) + 1.7 * f64::from(run)).sin();
+        let variable = |name: &str, unit: &str, runs| Variable {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            runs,
+            twin: None,
+            finest: 0.0,
+            enters: Enters::Freely,
+        };
+        let variables = [variable("x", "m", runs(&way_m)), variable("kappa", "1/m", runs(&kappa_per_m))];
+        let residual = runs(&|run, step| 5e4 * kappa_per_m(run, step) + noise_n(run, step));
+        let problem = Problem {
+            variables: &variables,
+            times_s: &runs(&|_, step| f64::from(step)),
+            target: Target::Force,
+            rows: &AsTheyAre,
+            residual: &residual,
+            nuisances: &[],
+            fit: &[true; 4],
+        };
+        let bench = Bench::new(&problem).unwrap();
+        let bend = Factor { variable: 1, shape: Shape::Power(1.0), scale: 0.02, centre: 0.0 };
+        let fades = Factor { variable: 0, shape: Shape::Decay, scale: 2500.0, centre: 0.0 };
+        let judge = Judge::new(&bench);
+        let judged = |term: Term| {
+            let law = amplitudes(&bench, vec![term]).unwrap();
+            let folds = judge.judge(&bench, &law).unwrap().folds;
+            (law.cost, folds.iter().map(|(error, _)| error).sum::<f64>())
+        };
+        let (cost, error) = judged(Term::of(bend));
+        let (of_fading, error_of_fading) = judged(Term::product(fades, bend).unwrap());
+        assert!(of_fading > 1.5 * cost, "{of_fading} {cost}");
+        assert!(error_of_fading - error > 0.8 * (of_fading - cost), "{error_of_fading} {error}");
+    }
+}

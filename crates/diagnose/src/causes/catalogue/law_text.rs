@@ -123,7 +123,7 @@ impl LawText {
     }
 
     /// One number, in a role.
-    fn constant(role: &'static str, name: &str) -> Self {
+    pub(crate) fn constant(role: &'static str, name: &str) -> Self {
         Self {
             role,
             text: name.to_owned(),

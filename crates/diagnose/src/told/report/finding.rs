@@ -481,27 +481,13 @@ fn with_image(from: f64, image: f64, half: f64) -> [f64; 2] {
 }
 
 fn function_parameters(cause: &Cause, function: &crate::causes::profile::Function) -> Vec<ParameterReport> {
-    /// So many times as uncertain as the middle one of all knots is hardly known.
-    const KNOWN: f64 = 2.0;
     let term = &cause.terms[0];
-    // The largest value over all groups, with its own band. Along a path it is one that is about as well known as elsewhere: a knot beyond
-    // the last row was never driven over.
-    let sds: Vec<f64> = function.values.iter().flat_map(|(_, sds)| sds.iter().copied()).collect();
-    let most = if cause.form == Form::OverPosition { KNOWN * median(&sds) } else { f64::INFINITY };
-    let mut peak = (0.0, 0.0);
-    let (mut sum, mut count) = (0.0, 0usize);
     let pairs = function.values.iter().flat_map(|(values, sds)| values.iter().zip(sds.iter()));
-    for (value, sd) in pairs.filter(|(_, sd)| **sd <= most) {
-        if value.abs() > f64::abs(peak.0) {
-            peak = (*value, *sd);
-        }
-        sum += value * value;
-        count += 1;
-    }
+    let pairs: Vec<(f64, f64)> = pairs.map(|(value, sd)| (*value, *sd)).collect();
+    let (mut peak, rms) = peak_and_rms(&pairs, cause.form == Form::OverPosition);
     if let Some(level) = level(cause, function) {
         peak = level;
     }
-    let rms = (sum / count.max(1) as f64).sqrt();
     let unit = if cause.form == Form::OverPosition { "m" } else { "s" };
     let length = function.spread.length;
     let mut told = vec![
@@ -529,6 +515,19 @@ fn function_parameters(cause: &Cause, function: &crate::causes::profile::Functio
         });
     }
     told
+}
+
+/// The largest of some values with its own standard deviation, and their root mean square. Along a path they are those that are about as
+/// well known as the others: a knot beyond the last row was never driven over.
+fn peak_and_rms(values_and_sds: &[(f64, f64)], along_a_path: bool) -> ((f64, f64), f64) {
+    /// So many times as uncertain as the middle one of all is hardly known.
+    const KNOWN: f64 = 2.0;
+    let sds: Vec<f64> = values_and_sds.iter().map(|(_, sd)| *sd).collect();
+    let most = if along_a_path { KNOWN * median(&sds) } else { f64::INFINITY };
+    let known = || values_and_sds.iter().copied().filter(|(_, sd)| *sd <= most);
+    let larger = |one: (f64, f64), other: (f64, f64)| if other.0.abs() > one.0.abs() { other } else { one };
+    let square: f64 = known().map(|(value, _)| value * value).sum();
+    (known().fold((0.0, 0.0), larger), (square / known().count().max(1) as f64).sqrt())
 }
 
 fn experiment(cause: &Cause, cured: &Cured, case: &Case) -> String {
@@ -592,6 +591,29 @@ pub mod tests {
     fn fit(lack_of_fit: f64, after: f64) -> Fit {
         let runs = || FitRuns { runs: Vec::new(), rmse_before: 1.0, rmse_after: after, noise: 0.1 };
         Fit { signal: "speed_m_s".to_owned(), fitted: runs(), held_out: Some(runs()), lack_of_fit }
+    }
+
+    #[test]
+    fn the_largest_slope_is_one_that_was_driven_over() {
+        let slopes = [(0.010, 5e-4), (-0.013, 5e-4), (0.006, 9e-4), (-0.022, 5e-3)];
+        let (peak, rms) = peak_and_rms(&slopes, true);
+        assert_eq!(peak, (-0.013, 5e-4));
+        assert!((rms - (3.05e-4_f64 / 3.0).sqrt()).abs() < 1e-12, "{rms}");
+        // What is on for a moment is known less well than what is off for long, and is there.
+        assert_eq!(peak_and_rms(&slopes, false).0, (-0.022, 5e-3));
+        assert_eq!(peak_and_rms(&[], true), ((0.0, 0.0), 0.0));
+    }
+
+    #[test]
+    fn runs_are_foretold_where_those_held_out_are_told_as_well_as_those_fitted() {
+        let fit = |held_out: f64| Fit {
+            held_out: Some(FitRuns { runs: Vec::new(), rmse_before: 1.0, rmse_after: held_out, noise: 0.1 }),
+            ..fit(3.0, 0.3)
+        };
+        assert!(fit(0.35).is_foretold() && !fit(0.45).is_foretold(), "1.3 times 0.3 is as well");
+        let little = Fit { fitted: fit(0.6).fitted.clone(), ..fit(0.6) };
+        assert!(!little.is_foretold());
+        assert!(!Fit { held_out: None, ..fit(0.3) }.is_foretold());
     }
 
     #[test]

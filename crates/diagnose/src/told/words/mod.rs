@@ -260,6 +260,7 @@ pub fn fault(fault: &crate::soundness::faults::Fault) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::causes::catalogue::LawText;
 
     #[test]
     fn one_thing_was_and_several_were() {
@@ -275,6 +276,25 @@ mod tests {
         ] {
             assert_eq!(several(words), expected, "{words}");
         }
+    }
+
+    #[test]
+    fn a_law_that_rivals_a_cause_is_named_by_its_equation() {
+        let constant = |name: &str, value: f64, sd: Option<f64>, unit: &str| headland_symbolic::Constant {
+            name: name.to_owned(),
+            value,
+            sd,
+            unit: unit.to_owned(),
+        };
+        let law = LawText {
+            text: "a1_n * (v / v1_m_s)^3".to_owned(),
+            constants: vec![constant("a1_n", 936.0, Some(20.0), "N"), constant("v1_m_s", 20.0, None, "m/s")],
+            ..LawText::constant("resistance", "a_n")
+        };
+        assert_eq!(
+            named(&Cause::of_law(law, Kind::Motion)),
+            "a cause that nobody listed, F = a1_n * (v / v1_m_s)^3 (a1 936 N, v1 20.0 m/s)"
+        );
     }
 
     #[test]

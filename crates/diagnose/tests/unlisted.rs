@@ -471,6 +471,45 @@ fn a_consumer_above_a_speed_is_found_beside_another_resistance_of_the_battery() 
     assert_eq!((law.balance, law.depends_on.clone()), (Kind::Battery, vec!["speed_m_s".to_owned()]));
 }
 
+/// What heats and cools by the square of how far the air is from 19.2 °C, on ten days of one temperature each: a heater's ramp is nearly the
+/// same, and a level of each run is all of it, and neither foretells another day.
+#[test]
+fn a_consumer_by_the_temperature_of_each_day_is_a_law_and_no_level_of_each_run() {
+    const PER_K2_W: f64 = 4.7;
+    const COMFORT_C: f64 = 19.2;
+    const DAYS_C: [f64; 10] = [-7.3, 33.1, 4.2, 25.7, -2.9, 14.8, 29.4, 8.6, 20.3, 0.7];
+    let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
+        "speed_m_s" => value + 0.02 * draws.normal(),
+        "motor_torque_n_m" => value + 0.5 * draws.normal(),
+        _ => value + 0.1 * draws.normal(),
+    };
+    let channels = ["speed_m_s", "motor_torque_n_m", "battery_voltage_v", "battery_current_a"];
+    let registry = headland_stock::registry();
+    let text = scenario(0.069, "", "");
+    let of = |seed: u64| recording_of_scenario(&text, &registry, &channels, (seed, &noisy));
+    let mut recording = of(8);
+    recording.runs.extend(of(9).runs);
+    for (number, (run, air_c)) in recording.runs.iter_mut().zip(DAYS_C).enumerate() {
+        (run.id, run.path, run.held_out) = (format!("d{number}"), None, number % 4 == 2);
+        let power_w = PER_K2_W * (air_c - COMFORT_C).powi(2);
+        let voltage_v = run.trace.get("battery_voltage_v").unwrap().to_vec();
+        let mut current_a = run.trace.remove("battery_current_a").unwrap().values;
+        for (current_a, voltage_v) in current_a.iter_mut().zip(voltage_v) {
+            *current_a += power_w / voltage_v;
+        }
+        run.trace.push("battery_current_a", current_a, Origin::Measured).unwrap();
+        let air_c = vec![air_c; run.trace.len()];
+        run.trace.push("air_temperature_c", air_c, Origin::Measured).unwrap();
+    }
+    let found = found_of_scenario(&text, &recording, &Options::default(), &registry).unwrap();
+    let said = &found.diagnosis;
+    assert_eq!(said.verdict, Verdict::Unlisted, "{}", said.answer);
+    let [law] = &said.findings[..] else { panic!("{}", said.answer) };
+    assert_eq!(law.depends_on, ["air_temperature_c"], "{}", said.answer);
+    let held_out = said.fit.held_out.as_ref().unwrap();
+    assert!(held_out.rmse_after < 0.2 * held_out.rmse_before, "{held_out:?}");
+}
+
 /// Every drive loses some of its power with the square of its force, and that is free: three to four times what is usual is told by its
 /// size, which what is usual would hide.
 #[test]

@@ -479,7 +479,6 @@ fn a_consumer_by_the_temperature_of_each_day_is_a_law_and_no_level_of_each_run()
     const COMFORT_C: f64 = 19.2;
     const DAYS_C: [f64; 10] = [-7.3, 25.1, 4.2, 28.7, -2.9, 14.8, 26.4, 8.6, 20.3, 0.7];
     let noisy = |name: &str, value: f64, draws: &mut Draws| match name {
-        "speed_m_s" => value + 0.02 * draws.normal(),
         "motor_torque_n_m" => value + 0.5 * draws.normal(),
         _ => value + 0.02 * draws.normal(),
     };

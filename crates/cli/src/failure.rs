@@ -34,7 +34,7 @@ pub enum Failure {
     /// The user interrupted.
     #[error("interrupted; everything that was finished is kept")]
     Interrupted,
-    /// The user interrupted what writes at its end alone.
+    /// The user interrupted a diagnosis, which is written at its end alone.
     #[error("interrupted; this is written when it is done, and nothing of it was")]
     Unfinished,
 }
@@ -118,7 +118,7 @@ pub fn told_recording(error: &RecordingError) -> String {
 impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Self {
         match error {
-            StudyError::Interrupted => Self::Unfinished,
+            StudyError::Interrupted => Self::Interrupted,
             StudyError::Trace(error) => Self::Machine(error.to_string()),
             other => Self::Input(other.to_string()),
         }

@@ -7,6 +7,7 @@ use crate::output::Output;
 use crate::page;
 use crate::picture::{Wanted, draw_diagnosis};
 use crate::say::Say;
+use headland_calibrate::study::StudyError;
 use headland_diagnose::{DiagnoseError, Diagnosed, Options, Progress};
 use headland_plugin::Registry;
 use headland_recording::Recording;
@@ -29,7 +30,7 @@ impl Progress for Steps {
 impl From<DiagnoseError> for Failure {
     fn from(error: DiagnoseError) -> Self {
         match error {
-            DiagnoseError::Interrupted => Self::Unfinished,
+            DiagnoseError::Interrupted | DiagnoseError::Study(StudyError::Interrupted) => Self::Unfinished,
             DiagnoseError::Study(error) => error.into(),
             other => Self::Input(other.to_string()),
         }

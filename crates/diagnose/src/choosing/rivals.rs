@@ -259,10 +259,9 @@ impl State<'_> {
                 let law = self.cause(&part.trial).law.is_some();
                 let plainer = self.numbers(&other.parts) < self.numbers(&found.stand.parts);
                 let other_words = |correlation: f64| law && !plainer && correlation > OTHER_WORDS;
-                let alike: Vec<(usize, f64)> = likest
+                let likest = likest
                     .filter(|(_, correlation)| *correlation > UNLIKE && !other_words(*correlation))
-                    .collect();
-                let likest = alike.iter().copied().max_by(|one, other| one.1.total_cmp(&other.1));
+                    .max_by(|one, other| one.1.total_cmp(&other.1));
                 // A law that does alone what several do together stands beside each of them.
                 let whole = law && plainer && replaced.len() > 1 && likest.is_some();
                 let beside = if whole {

@@ -314,6 +314,7 @@ impl State<'_> {
         let Some(reduced) = self.reduced(&stand.noises, &[]) else { return true };
         let nuisance: Vec<usize> = (0..self.pool.nuisance).collect();
         let sd = self.sd();
+        let least = worth(stand) - MARGIN - BETTER * (worth(stand) - worth(first)).max(0.0);
         let laws = stand.parts.iter().filter(|part| self.cause(&part.trial).law.is_some());
         laws.into_iter().any(|law| {
             // What each run has for itself says whatever differs between them, in more numbers than a reason for it.
@@ -326,7 +327,6 @@ impl State<'_> {
             let same = |trial: &&Trial| {
                 reduced.squared_correlation(&law.trial.columns, &trial.columns, &nuisance, &sd) > OTHER_WORDS
             };
-            let least = worth(stand) - MARGIN - BETTER * (worth(stand) - worth(first)).max(0.0);
             listed.filter(same).any(|trial| self.can_stand_for(law, trial, stand, least))
         })
     }
